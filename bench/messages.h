@@ -34,11 +34,6 @@ int MPI_Isend(const void *data, int count, MPI_Datatype type, int to, int tag, M
     return PMPI_Isend(data, count, type, to, tag, comm, request);
 }
 
-int MPI_Issend(const void *data, int count, MPI_Datatype type, int to, int tag, MPI_Comm comm, MPI_Request *request) {
-    count_message(bytes_of(count, type), to, comm);
-    return PMPI_Issend(data, count, type, to, tag, comm, request);
-}
-
 int MPI_Send_init(const void *data, int count, MPI_Datatype type, int to, int tag, MPI_Comm comm,
                   MPI_Request *request) {
     const int status = PMPI_Send_init(data, count, type, to, tag, comm, request);
@@ -75,9 +70,10 @@ int MPI_Bcast(void *data, int count, MPI_Datatype type, int root, MPI_Comm comm)
     return PMPI_Bcast(data, count, type, root, comm);
 }
 
-int MPI_Ibarrier(MPI_Comm comm, MPI_Request *request) {
+int MPI_Alltoall(const void *data, int count, MPI_Datatype type, void *result, int got, MPI_Datatype got_type,
+                 MPI_Comm comm) {
     counted[COLLECTIVES] += 1;
-    return PMPI_Ibarrier(comm, request);
+    return PMPI_Alltoall(data, count, type, result, got, got_type, comm);
 }
 
 #endif

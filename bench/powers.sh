@@ -3,7 +3,7 @@
 # has the table. SPDX-License-Identifier: MIT
 #
 # bench/powers.sh [WORD [ACCURACIES [SEEDS]]]: all cases, or those whose name has this word. ACCURACIES are "high normal
-# low" and SEEDS "1 2 3" if nothing else is given. "directions=300,paths=800" is an accuracy, too. A line has a case and
+# low" and SEEDS "1 2 3" if nothing else is given. "tolerance=0.01" is an accuracy, too. A line has a case and
 # an accuracy. Errors are differences from `fibrad heat`:
 #     rms           root mean square of those of particles over that of their powers, the mean of all seeds
 #     largest       that of a particle over its power, or over the root mean square of all powers if that is larger;
@@ -27,27 +27,28 @@ declare -A bar=(
     ["flat 0.8 high"]=.5 ["flat 0.8 normal"]=2.2 ["flat 0.8 low"]=4.7 ["plate high"]=.8 ["plate normal"]=5.5 ["plate low"]=10.5
 )
 
-# measure CASE BED WALLS LIST: BED is a dump. WALLS are keywords of the fix, LIST has the same walls for fibrad heat, all
-# of emissivity 0.9. Variables tell more: `e`, emissivities of odd and even ids; `field`, temperatures of particles as a
+# measure CASE BED WALLS [LIST]: BED is a dump. WALLS are in the words of the program, all of emissivity 0.9; LIST has the
+# same for fibrad heat if it reads the bed turned. Variables tell more: `e`, emissivities of odd and even ids; `field`, temperatures of particles as a
 # formula of LAMMPS; `cold`, that of the surroundings; `error`, allowed to fibrad heat; `turn`, a program of awk for what
 # fibrad heat reads.
 measure() {
-    local name=$1 bed=$2 walls=$3 list=$4 out=$work/powers.dump boundary accuracy words seed heat key
+    local name=$1 bed=$2 walls=${3//:temperature/:emissivity=0.9:temperature} list=${4:-$3} out=$work/powers.dump boundary accuracy words seed heat key
     local e=${e:-0.8 0.8} field=${field:-300} cold=${cold:-300} error=${error:-0.002} turn=${turn:-1}
     [[ $name == *"$only"* ]] || return 0
 
     boundary=$(awk '/BOX BOUNDS/ { for (i = 4; i < 7; i++) printf "%s ", substr($i, 1, 1) }' "$bed")
     as_data "$bed" >"$work/bed.data"
+    walls=$(echo "$walls" | sed 's/,\([a-z]\)/ wall \1/g; s/[:=,]/ /g')
     for accuracy in $accuracies; do
         words="accuracy $accuracy"
-        [[ $accuracy != *=* ]] || words=${accuracy//[=,]/ }
+        [[ $accuracy != *=* ]] || words=${accuracy/=/ }
         rm -f "$work"/log.* "$work/errors"
         for seed in $seeds; do
             "$LMP" -in bench/powers.lmp -screen none -log "$work/log.$seed" -var load "$BUILD/couple/fibrad.lmp" \
                 -var data "$work/bed.data" -var boundary "$boundary" -var T "$field" -var out "$out" -var words \
-                "emissivity type $e surroundings $cold $walls $words seed $seed"
-            heat=(--length-unit m --temperature d_T --ambient "$cold" --emissivity "1:${e/ /,2:}" 
-                --wall "$(echo "$list" | sed "s/:temperature/:emissivity=0.9&/g")" --error "$error" --quiet)
+                "emissivity type $e surroundings $cold wall $walls $words seed $seed"
+            heat=(--length-unit m --temperature d_T --ambient "$cold" --emissivity "1:${e/ /,2:}"
+                --wall "${list//:temperature/:emissivity=0.9:temperature}" --error "$error" --quiet)
             awk '/ITEM: ATOMS/ || (NF == 8 && !/ITEM/) { NF-- } 1' "$out" | awk "$turn" >"$work/heat.dump"
             key=$(echo "${heat[@]}" | cat - "$work/heat.dump" | cksum | cut -d ' ' -f 1)
             test -e "$work/$key.csv" || "$BUILD/fibrad" heat "$work/heat.dump" "${heat[@]}" -o "$work/$key.csv"
@@ -144,27 +145,24 @@ high=$(awk 'NF == 8 && $5 + $6 > high { high = $5 + $6 } END { print high }' $po
 box 12 "$high" | sed '/solid zhi/,$d' >"$work/box.stl"
 box 12 1 | sed -n '/solid zlo/,/endsolid/p' >"$work/plate.stl"
 funnel 11 5 25 4 >"$work/funnel.stl"
-sides=
-for face in xlo xhi ylo yhi zlo; do sides="$sides wall $face 1000 0.9"; done
-
 t=:temperature=1000
-measure below "$work/below.dump" "wall zlo 1000 0.9" zmin:temperature=1000
-measure hopper "$work/hopper.dump" "wall zlo 1000 0.9 wall mesh $work/funnel.stl 300 0.9 both" "zmin:temperature=1000,mesh:$work/funnel.stl:both:temperature=300"
-measure curtain "$work/curtain.dump" "wall zlo 1000 0.9" zmin:temperature=1000
-measure closed $poly "$sides wall zhi 1000 0.9 at $high" "xmin$t,xmax$t,ymin$t,ymax$t,zmin$t,zmax:at=$high$t"
-measure "box 0.8" $poly "$sides wall zhi open" box:temperature=1000,zmax:open
-e="0.8 0.3" measure "box 0.8 and 0.3" $poly "$sides wall zhi open" box:temperature=1000,zmax:open
-measure "triangles 0.8" $poly "wall mesh $work/box.stl 1000 0.9" "mesh:$work/box.stl:temperature=1000"
-cylinder="wall zlo 1000 0.9 wall zcylinder 5.5 300 0.9 at 6 6 wall zhi open"
-measure poured "$work/poured.dump" "$cylinder" zmin:temperature=1000,zmax:open,cylinder:6,6,5.5:temperature=300
-turn=$lying measure drum "$work/drum.dump" "wall xcylinder 6 1000 0.9 at 6 6 wall xlo 300 0.9 wall xhi 300 0.9" \
-    cylinder:6,6,6:temperature=1000,zmin:at=0:temperature=300,zmax:at=12:temperature=300
-measure plate tests/data/mono2000.dump "wall mesh $work/plate.stl 1000 0.9" "mesh:$work/plate.stl:temperature=1000"
+measure below "$work/below.dump" zmin$t
+measure hopper "$work/hopper.dump" "zmin$t,mesh:$work/funnel.stl:temperature=300:both"
+measure curtain "$work/curtain.dump" zmin$t
+measure closed $poly "box$t,zmax$t:at=$high"
+measure "box 0.8" $poly box$t,zmax:open
+e="0.8 0.3" measure "box 0.8 and 0.3" $poly box$t,zmax:open
+measure "triangles 0.8" $poly "mesh:$work/box.stl$t"
+cylinder=zmin$t,cylinder:6,6,5.5:temperature=300,zmax:open
+measure poured "$work/poured.dump" $cylinder
+turn=$lying measure drum "$work/drum.dump" xcylinder:6,6,6$t,xmin:temperature=300,xmax:temperature=300 \
+    cylinder:6,6,6$t,zmin:at=0:temperature=300,zmax:at=12:temperature=300
+measure plate tests/data/mono2000.dump "mesh:$work/plate.stl$t"
 # shellcheck disable=SC2097,SC2098  # measure is a function
 for e in 0.8 0.3; do
     test $e = 0.8 || error=0.003
-    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" "wall zlo 1000 0.9" zmin:temperature=1000
-    e="$e $e" measure "cylinder $e" "$work/cylinder.dump" "$cylinder" zmin:temperature=1000,zmax:open,cylinder:6,6,5.5:temperature=300
-    e="$e $e" field=1000 cold=0 measure "flat $e" $flat "wall zlo 0 0.9" zmin:temperature=0
+    e="$e $e" error=0.005 cold=600 measure "apart $e" "$work/apart.dump" zmin$t
+    e="$e $e" measure "cylinder $e" "$work/cylinder.dump" $cylinder
+    e="$e $e" field=1000 cold=0 measure "flat $e" $flat zmin:temperature=0
 done
-e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat "wall zlo 300 0.9" zmin:temperature=300
+e="0.8 0.8" error=0.002 field="300+700*z/bound(all,zmax)" cold=1000 measure "linear 0.8" $flat zmin:temperature=300

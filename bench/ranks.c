@@ -1,4 +1,4 @@
-/* ranks.c - rows and powers over ranks: seconds, entries, halos, memory and messages, for docs/scale.md.
+/* ranks.c - rows and powers over ranks: seconds, entries, halos, memory and messages, for docs/lammps.md.
  * SPDX-License-Identifier: MIT
  *
  * mpirun -np P build/couple/ranks DUMP COPIES EMISSIVITY [CUTOFF [ACCURACY]]: the bed is that of a LAMMPS dump (columns

@@ -1,4 +1,4 @@
-# scale_ranks.awk - the table of docs/scale.md, from what build/couple/ranks measured: awk -f bench/scale_ranks.awk
+# scale_ranks.awk - the table of docs/lammps.md, from what build/couple/ranks measured: awk -f bench/scale_ranks.awk
 # SPDX-License-Identifier: MIT
 # Lengths in radii. A rank has a cube of the bed; messages cost latency and bytes over bandwidth.
 function ceil(x) { return x == int(x) ? x : int(x) + 1 }
@@ -13,9 +13,9 @@ function row(all, ranks,    n, side, halo, near, lists, map, bytes, messages, ma
     map = all * volume / (cutoff / 4) ^ 3 / 8
     if (map > 2 ^ 21) map = 2 ^ 21
     logs = log(ranks) / log(2)
-    # making rows: particles of the halo and requests, each after its number; 35 collective calls; boxes; the map
-    messages = 4 * near + 2 * 35 * logs
-    bytes = ranks == 1 ? 0 : 72 * halo + 4 * halo + 48 * ranks + 2 * map
+    # making rows: particles of the halo and requests; 40 collective calls; boxes; numbers; the map
+    messages = 2 * near + 2 * 40 * logs
+    bytes = ranks == 1 ? 0 : 72 * halo + 4 * halo + 48 * ranks + 2 * 2 * ranks * logs + 2 * map
     making = messages * latency + bytes / bandwidth
     # a step of heat: values of the halo there and powers back; 3 reductions
     heat_messages = 2 * near + 6 * logs
@@ -23,7 +23,7 @@ function row(all, ranks,    n, side, halo, near, lists, map, bytes, messages, ma
     heat = heat_messages * latency + heat_bytes / bandwidth
     # ... the first one after particles have changed ranks: entries, questions and replies, and requests
     gone = ranks == 1 ? 0 : 6 / 4 * moved / side * n
-    link = (6 * (gone > ranks - 1 ? ranks - 1 : gone) + 2 * near + 2 * 14 * logs) * latency + 44 * gone / bandwidth
+    link = (3 * (gone > ranks - 1 ? ranks - 1 : gone) + near + 2 * 18 * logs) * latency + (44 * gone + 4 * 2 * ranks * logs) / bandwidth
     printf "| 1e%d | %d | %d | %d | %d", int(log(all) / log(10) + .5), ranks, n, halo, near
     printf " | %s | %s", short((fixed + particle * n + other * halo) / 1e9), short(bytes / 1e6)
     printf " | %s | %s", short(seconds_row * n), short(making)

@@ -361,7 +361,7 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
  *   Errors   _ARGUMENT, _SIZE
  *            _GEOMETRY: there are more than 64 n pairs; fault->first is a large sphere
  *   Cost     as fibrad_scene_init
- *   Source   docs/coupling.md */
+ *   Source   docs/lammps.md */
 int fibrad_spheres_inside(const fibrad_spheres *spheres, void *memory, size_t size, double *part, uint32_t *other,
                           fibrad_fault *fault);
 
@@ -886,7 +886,7 @@ typedef struct fibrad_flow {
  *            that is not finite
  *            _STATE: the block of the collection was moved to another alignment
  *   Cost     2 ns per entry
- *   Source   docs/coupling.md */
+ *   Source   docs/lammps.md */
 int fibrad_rows_flow(const fibrad_rows *rows, uint32_t spheres, uint32_t walls, fibrad_flow *flow);
 
 #ifdef __cplusplus

@@ -19,6 +19,7 @@ count=$(echo "$commands" | wc -w)
 test "$count" -ge 7 || fault "only $count commands"
 
 # ---- pages: as many as commands, and one; all words of the help in their order but headings and synopsis
+# --------------
 words() { sed 's/  */\n/g' | grep -v '^$'; }
 if command -v groff >/dev/null; then
     for name in "" $commands; do
@@ -45,7 +46,8 @@ fi
 test "$(find "$BUILD/man" -type f | wc -l)" = $((count + 1)) || fault "other files in $BUILD/man"
 
 # ---- completion
-# complete_words WORD...: the completions of the last word
+# -------------------------------------------------------------------------------------------------------- complete
+# WORD...: the completions of the last word
 complete_words() {
     (cd "$work/files" && bash -c '
         source "$0"

@@ -36,7 +36,7 @@ breaks() {
 # tests_of FILE: what is most likely to notice comes first, by tests/rooms.txt
 tests_of() {
     case $1 in
-    host/couple/walls/*) echo liggghts ;;
+    host/couple/simulation/*) echo liggghts ;;
     host/couple/*) echo couple ;;
     *) room=${1%/*} && echo "$(sed -n "s/^${room##*/} //p" tests/rooms.txt) $tests" ;;
     esac

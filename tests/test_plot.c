@@ -146,7 +146,8 @@ TEST(slices_of_heat) {
     bed.metres = 1;
     const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25}, wall_temperature[] = {412, 900};
     const struct walls walls = {.count = 2, .wall = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
-    struct heat_shown what = {&bed, &walls, temperature, power, wall_temperature};
+    struct heat_shown what = {
+        .bed = &bed, .walls = &walls, .temperature = temperature, .power = power, .wall_temperature = wall_temperature};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg, 700);
     static const char *const told[] = {"bed's.dump", "3 spheres of 300 to 1200.5 K lose 2.5 W",
@@ -195,7 +196,7 @@ TEST(prefixes_of_powers) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
     bed.metres = 1;
     const double temperature[] = {300, 1200, 777}, power[] = {125e3, 50e3, -0.}, small[] = {3e-6, -2e-6, 1e-6};
-    struct heat_shown what = {&bed, &(struct walls){0}, temperature, power, NULL};
+    struct heat_shown what = {.bed = &bed, .walls = &(struct walls){0}, .temperature = temperature, .power = power};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_has(svg, "gain 175 kW");
     assert_has(svg, "Net power [kW], slice");
@@ -212,7 +213,7 @@ TEST(no_slice_of_one_colour) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
     bed.metres = 1;
     const double temperature[] = {300, 1200, 777}, same[] = {-40, -40, -40}, light[] = {1, 2, 5};
-    struct heat_shown what = {&bed, &(struct walls){0}, temperature, same, NULL};
+    struct heat_shown what = {.bed = &bed, .walls = &(struct walls){0}, .temperature = temperature, .power = same};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_lacks(svg, "Net power [W], slice");
     assert_has(svg, "Temperature [K], slice at y = 0 m");
@@ -260,7 +261,7 @@ TEST(exchange_factors_shown) {
     for (int i = 0; i < 60; ++i) emissivity[i] = .5;
     const fibrad_exchange_rule rule = {.emissivity = emissivity};
     OWNED_FACTORS *factors;
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors));
+    assert_ok(exchange_of(NULL, &spheres, &rule, NULL, NULL, &factors));
     const struct contents what = {.bed = &bed, .factors = factors, .walls = &(struct walls){0}, .grey = &rule};
     OWNED char *svg = drawn(draw_bed, &what);
     assert_texts_inside(svg, 1240);

@@ -66,10 +66,10 @@ static void begin_box(struct settled *s, uint64_t seed) {
 }
 
 static int settle(struct settled *s) {
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = {.x = s->bed.x, .y = s->bed.y, .z = s->bed.z, .r = s->bed.r, .n = s->bed.n};
-    assert_ok(fibrad_radiation_new(&radiation, &s->scene, &spheres, &s->config, NULL));
-    const int status = fibrad_radiation_solve(radiation, &s->sources, &s->result);
+    assert_ok(made_with(&radiation, &s->scene, &spheres, &s->config, NULL));
+    const int status = fibrad_bed_solve(radiation, &s->sources, NULL, &s->result);
     return status;
 }
 
@@ -212,19 +212,19 @@ static void falling(void *calls, const double *temperature, const double *wall_t
 TEST(emissivity_of_temperature) {
     for (int given = 0; given < 2; ++given) {
         OWNED_BY(settled_free) struct settled s;
-        OWNED_RADIATION *radiation = NULL;
+        OWNED_MADE *radiation = NULL;
         int calls = 0;
         begin(&s, BED({0, 0, 0, .5}));
         s.temperature[0] = given ? 800 : unknown, s.power[0] = given ? unknown : 5e4, s.emissivity[0] = .5;
         s.sources.power = s.power, s.sources.emissivity = NULL;
         const fibrad_spheres spheres = {.x = s.bed.x, .y = s.bed.y, .z = s.bed.z, .r = s.bed.r, .n = 1};
-        assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL));
-        assert_ok(fibrad_radiation_settle(radiation, &s.sources, falling, &calls, s.emissivity, NULL, &s.result));
+        assert_ok(made_with(&radiation, NULL, &spheres, NULL, NULL));
+        assert_ok(made_settle(radiation, &s.sources, falling, &calls, s.emissivity, NULL, &s.result));
         const double t = s.found.temperature[0];
         close_to(-s.found.power[0], pi * (.9 - t / 2000) * sigma * (pow(t, 4) - pow(300, 4)), 1e-4);
         if (given) ck_assert(t == 800 && calls == 2 && s.emissivity[0] == .5);
         if (!given) ck_assert_double_eq(s.found.power[0], -5e4);
-        assert_invalid(fibrad_radiation_settle(radiation, &s.sources, NULL, NULL, s.emissivity, NULL, &s.result));
+        assert_invalid(made_settle(radiation, &s.sources, NULL, NULL, s.emissivity, NULL, &s.result));
     }
 }
 

@@ -23,7 +23,6 @@ struct conductivity_request {
     struct conduction_rule rule;
     bool steady;
     struct contact_options contacts;
-    double isothermal; /* [W/(m K)] of conduction_isothermal; NaN: not known */
 };
 
 static int take_axis(const char *text, void *axis) {
@@ -245,9 +244,10 @@ static void conductivity_report(struct conductivity_request *request, const stru
                       conduction_worst(&request->rule, result), "F_E; more --max-rays would help");
     axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE | FLIGHTS_LEAVING, unreliable);
     report_text(report, "unreliable", *unreliable ? unreliable : "none");
-    if (!isnan(request->isothermal)) {
+    if (!isnan(result->isothermal)) {
         char text[80];
-        snprintf(text, sizeof text, "right to 5 %% for k_s above %.3g W/(m K)", request->isothermal);
+        snprintf(text, sizeof text, "right to 5 %% for k_s above %.3g W/(m K)",
+                 result->isothermal * pow(result->temperature, 3));
         report_text(report, "isothermal", text);
     }
     if (!isnan(result->temperature)) {
@@ -282,16 +282,6 @@ static void conductivity_warn(const struct conductivity_request *request, const 
                    axes);
 }
 
-/* If the unit of length is known, finds the k_s above which F_E with one temperature a sphere is right. */
-static int conductivity_isothermal(struct conductivity_request *request, const struct bed *bed,
-                                   const unsigned char *emits, const struct conduction *result) {
-    fibrad_run run = bed_options_run(&request->bed);
-    request->isothermal = NAN;
-    if (request->solid.given || !(result->temperature > 0) || !bed_options_unit(&request->bed, bed)) return STATUS_OK;
-    const int status = conduction_isothermal(bed, emits, &request->rule, &run, result, &request->isothermal);
-    return bed_options_status(&request->bed, bed, status, &run.fault);
-}
-
 /* Follows the paths of a bed. Refuses a bed that emits nothing. */
 static int conductivity_follow(struct conductivity_request *request, const struct bed *bed, const unsigned char *emits,
                                struct conduction *result) {
@@ -303,62 +293,48 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* Leaves out contacts with walls other than the plates, which are the first two. Returns how many are left. */
-static uint32_t contacts_of_plates(struct contact_state *contacts, uint32_t spheres) {
-    uint32_t kept = 0;
-    for (uint32_t k = 0; k < contacts->n; ++k) {
-        if (contacts->first[k] >= spheres + 2 || contacts->second[k] >= spheres + 2) continue;
-        contacts->first[kept] = contacts->first[k], contacts->second[kept] = contacts->second[k];
-        contacts->conductance[kept++] = contacts->conductance[k];
-    }
-    return kept;
-}
-
 /* Conductivities between plates along an axis, in W/(m K). Without a temperature there is F_E alone. */
 static int conductivity_plates(struct conductivity_request *request, const struct bed *bed, double kelvins, int axis,
-                               struct conduction_plates *plates) {
-    struct bed open = *bed;
-    open.period[axis] = 0;
-    const struct walls walls = plates_walls(&open, &request->walls, axis);
+                               struct conduction_plates *found) {
     const double any = kelvins > 0 ? kelvins : 1000, metres = bed->metres > 0 ? bed->metres : 1;
-    double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
+    double *at = malloc(((size_t)bed->n + 1) * sizeof *at), of_walls[WALLS_MAX];
     struct contact_state contacts = {0};
     struct table_excess excess[2] = {{0}};
-    fibrad_bed *made = NULL;
-    fibrad_fault fault;
-    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = (const double[]){any, any}};
+    struct plates plates;
+    fibrad_run run = bed_options_run(&request->bed);
+    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = of_walls};
     if (!at) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i) at[i] = any;
-    int status = bed_options_make(&request->bed, &open, &walls, &made);
+    for (int k = 0; k < WALLS_MAX; ++k) of_walls[k] = any;
+    int status = plates_open(&plates, bed, &request->walls, axis, &run);
+    status = bed_options_status(&request->bed, bed, status, &run.fault);
     if (!status)
-        status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, made, &walls, &request->solid,
-                                1 / (metres * metres), &sources);
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, &plates.bed, plates.made, &plates.walls,
+                                &request->solid, 1 / (metres * metres), &sources);
     if (!status) {
-        contacts_excess(&contacts, &open, at, NULL, excess);
+        contacts_excess(&contacts, bed, at, NULL, excess);
         contacts_warn(&request->bed.warned, excess);
-        const struct plates_problem problem = {bed,
-                                               &request->walls,
-                                               request->rule.emissivity,
+        const struct plates_problem problem = {request->rule.emissivity,
                                                request->rule.conductivity,
                                                any,
                                                contacts_given(&request->contacts),
-                                               contacts_of_plates(&contacts, bed->n),
+                                               contacts.n,
                                                contacts.first,
                                                contacts.second,
                                                contacts.conductance};
-        status = plates_conduct(&problem, made, axis, plates);
-        fibrad_bed_describe(made, NULL, &fault);
-        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &fault);
-        status = refused ? refused : bed_options_status(&request->bed, bed, status, &fault);
+        status = plates_conduct(&plates, &problem, found);
+        fibrad_bed_describe(plates.made, NULL, &run.fault);
+        const int refused = contacts_refuse(&contacts, &request->bed, bed, &plates.walls, status, &run.fault);
+        status = refused ? refused : bed_options_status(&request->bed, bed, status, &run.fault);
     }
-    struct conduction_value *const in_metres[] = {&plates->radiation, &plates->conduction, &plates->both};
+    struct conduction_value *const in_metres[] = {&found->radiation, &found->conduction, &found->both};
     for (int k = 0; k < 3 && !status; ++k) in_metres[k]->k *= metres, in_metres[k]->error *= metres;
     contacts_free(&contacts);
-    fibrad_bed_free(made);
+    plates_close(&plates);
     free(at);
-    if (!status && plates->spheres < PLATES_FITTED)
+    if (!status && found->spheres < PLATES_FITTED)
         return message_at(STATUS_INPUT, request->bed.name, 0,
-                          "%u spheres in the inner half along %c are too few for a line", plates->spheres, 'x' + axis);
+                          "%u spheres in the inner half along %c are too few for a line", found->spheres, 'x' + axis);
     return status;
 }
 
@@ -431,21 +407,14 @@ static int conductivity_at(struct conductivity_request *request, struct bed *bed
     int status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status) status = conductivity_solid(request, bed, kelvins, &relative);
     request->rule.emissivity = emissivity, request->rule.conductivity = relative, request->rule.walls = &request->walls;
+    request->rule.isothermal = !request->solid.given && kelvins > 0 && bed_options_unit(&request->bed, bed);
     if (!status) status = conduction_emitters(bed, &request->walls, request->rule.axis, margin, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
     if (!status && request->at) conduction_at(result, bed, kelvins);
-    if (!status) status = conductivity_isothermal(request, bed, emits, result);
     if (!status) status = conductivity_steady(request, bed, kelvins, result);
     free(emissivity);
     free(relative);
     return status;
-}
-
-/* If each sphere has one temperature, F_E is that of the first temperature. */
-static void conductivity_again(struct conductivity_request *request, const struct bed *bed, double kelvins,
-                               struct conduction *result) {
-    request->isothermal *= pow(kelvins / result->temperature, 3);
-    conduction_at(result, bed, kelvins);
 }
 
 static int conductivity_frame(void *conductivity_request, struct bed *bed) {
@@ -458,10 +427,10 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     if (!status && request->at) status = bed_options_metres(&request->bed, bed, needs);
     for (int k = 0; k < request->temperatures && !status; ++k) {
         const double kelvins = request->temperature[k];
-        const bool again =
+        const bool again = /* if each sphere has one temperature, F_E is that of the first temperature */
             k > 0 && !request->solid.given && !contacts_given(&request->contacts) && result.temperature > 0;
         if (again)
-            conductivity_again(request, bed, kelvins, &result);
+            conduction_at(&result, bed, kelvins);
         else
             status = conductivity_at(request, bed, kelvins, emits, &result);
         if (!status) status = bed_options_write(&request->bed, bed, &what);

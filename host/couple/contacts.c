@@ -8,6 +8,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "contact/contact_list.h"
 #include "couple/insitu.h"
 #include "simple/fibrad_host.h"
 
@@ -97,7 +98,7 @@ static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_con
         c[k] = (struct conductor){list->first[k], list->second[k], list->distance[k], conductance[k]};
     *count = list->n;
     if (!status) qsort(c, *count, sizeof *c, by_ends);
-    fibrad_contacts_free(list);
+    free(list);
     free(solid);
     return status;
 }

@@ -8,7 +8,7 @@ MPIRUN = mpirun
 
 COUPLE := $(filter-out host/couple/example.c,$(call sources,host/couple/*.c host/couple/ranks/*.c))
 
-COUPLE_WALLS = host/couple/walls/mesh_motion.c host/couple/walls/mesh_walls.c
+COUPLE_WALLS = $(call sources,host/couple/simulation/*.c)
 
 # walls of triangles and tables, for programs that read files of them; a library of its own, since it has names of the program
 COUPLE_MESH = $(COUPLE_WALLS) \
@@ -52,7 +52,7 @@ COUPLE_DEPS     = $(filter deps-couple,$(MAKECMDGOALS))
 # couplings with other codes add to these lists
 include $(wildcard host/couple/lammps/*.mk host/couple/liggghts/*.mk)
 
-# what docs/scale.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
+# what docs/lammps.md rests on: mpirun -np 2 build/couple/ranks tests/data/monoper2000.dump 2 0.8
 $(BUILD)/couple/ranks: bench/ranks.c bench/messages.h $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 

@@ -2,8 +2,8 @@
  *
  * Index
  *   link    values of particles that other ranks own  fibrad_link_new, _forward, _reverse, _free
- *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _parts, _errors,
- *                                                     _conduct, _write, _message, _remark, _facts_get,
+ *   insitu  rows and powers while particles move      fibrad_insitu_new, _rows, _follow, _powers, _errors, _conduct,
+ *                                                     _write, _message, _remark, _facts_get,
  *                                                     _free, fibrad_accuracy_named
  *
  * Use         1. fibrad_insitu_new once.
@@ -21,8 +21,8 @@
  * Sources     A wall of emissivity above 0 is a source, and so is an opening. Paths begin at particles and at sources.
  *             Paths of sources tell what sources exchange with each other. Totals contain this exchange. Paths of
  *             sources also make rows of particles more accurate. Three kinds of walls have no paths: an endless wall, a
- *             wall from which paths reach a side that belongs to no wall, and any wall of a bed of more than
- *             config.gather particles. What such walls exchange with each other is left out. See docs/coupling.md.
+ *             wall from which paths reach a side that belongs to no wall, and any wall of a bed with a cutoff. What
+ *             such walls exchange with each other is left out. See docs/lammps.md.
  * Bits        Rows are the same to the bit for every number of ranks and threads, whoever owns which particle.
  * Collective  Every rank must call a collective function, and all ranks get the same status. All functions are
  *             collective over the communicator, except fibrad_link_free, fibrad_insitu_message, fibrad_insitu_remark,
@@ -31,14 +31,14 @@
  *             the same on all ranks, and names particles by id. The object is as it was before the call.
  * Strays      A stray is a particle beyond a wall or an opening, inside another particle, or in sight of a side of a
  *             triangle that belongs to no wall. With config.strict a stray is an error. Otherwise rows are made, and
- *             fibrad_insitu_remark says what was done (docs/coupling.md has more):
+ *             fibrad_insitu_remark says what was done (docs/lammps.md has more):
  *               left out  The centre of the particle lies beyond a plane or the cylinder, or the particle reaches
  *                         beyond an opening. It exchanges nothing and hides nothing.
  *               smaller   The centre of one particle lies inside another. The rows take smaller radii for both.
  *               no row    The particle sees a side of a triangle that belongs to no wall.
  * Units       One length unit L, which the caller chooses. Powers are in sigma K^4 L^2.
  * Words       Words and the layout of comments are as in fibrad.h.
- * Source      docs/coupling.md
+ * Source      docs/lammps.md
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_H
@@ -91,8 +91,8 @@ void fibrad_link_free(fibrad_link *link);
 /* The rows of a bed, and what is needed to make them. */
 typedef struct fibrad_insitu fibrad_insitu;
 
-/* Directions and paths of each row. If config.one_way is 1, or if a wall or the surroundings have no paths, a row has
- * the second number of paths. docs/lammps.md has errors and times. */
+/* Directions and paths of each row. If a wall or the surroundings have no paths, a row has the second number of paths.
+ * docs/lammps.md has errors and times. */
 typedef enum fibrad_accuracy {
     FIBRAD_ACCURACY_NORMAL = 0, /* 30 directions; 24 paths, or 80 */
     FIBRAD_ACCURACY_LOW = 1,    /* 16 directions; 8 paths, or 34 */
@@ -107,10 +107,11 @@ int fibrad_accuracy_named(const char *name);
 
 /* How rows are made. The same on all ranks. Zeroed: all defaults.
  *
- * Up to `gather` particles there is no cutoff by default, and each rank has all particles while rows are made. With
- * more particles the default cutoff follows from their number, so that ranks do not send each other too many: see
- * docs/coupling.md. Rows take about as long with any cutoff. A cutoff that is longer than a bed without periods is
- * none. */
+ * Up to 4e6 particles there is no cutoff by default, and each rank has all particles while rows are made. With more
+ * particles the default cutoff follows from their number, so that ranks do not send each other too many: see
+ * docs/lammps.md. A cutoff saves memory on many ranks. But then walls and the surroundings have no paths, since these
+ * need all particles. Rows take about as long with any cutoff. A bed without periods that is shorter than the cutoff
+ * is not cut. */
 typedef struct fibrad_insitu_config {
     double cutoff;       /* L, as in fibrad_exchange_rule, at least the largest diameter; 0: see above */
     uint32_t directions; /* as in fibrad_exchange_rule, for all rows; 0: those of `accuracy` */
@@ -120,8 +121,6 @@ typedef struct fibrad_insitu_config {
     int threads;         /* of each rank, 1 to 1024; 0: 1 */
     int strict;          /* 1: strays are errors; 0: they are left out, or smaller, see above */
     int accuracy;        /* a fibrad_accuracy */
-    int one_way;         /* 1: rows of particles use no paths of sources */
-    double gather;       /* number of particles up to which each rank has all, see above; 0: 4e6 */
 } fibrad_insitu_config;
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
@@ -209,7 +208,7 @@ int fibrad_insitu_new(fibrad_insitu **insitu, MPI_Comm comm, const fibrad_insitu
  *            _ARGUMENT: a centre lies beyond a wall
  *            _GEOMETRY: a centre lies inside another particle, or a particle reaches beyond an opening
  *            _BACK: one particle sees a side of a triangle that belongs to no wall
- *   Cost     that of fibrad_exchange_row for each particle, and of the paths of sources: docs/coupling.md */
+ *   Cost     that of fibrad_exchange_row for each particle, and of the paths of sources: docs/lammps.md */
 int fibrad_insitu_rows(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, uint64_t step);
 
 /* Makes rows of those particles alone that have come since the last rows, and keeps the other rows. The row of an
@@ -230,24 +229,17 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
  *            _MEMORY
  *            _UNSOLVABLE: rows of particles that conduct are too inaccurate for powers
  *   Cost     4 ns per entry, and some messages. If particles conduct, a linear system is solved, which takes 9 to 140
- *            times as long: docs/coupling.md */
+ *            times as long: docs/lammps.md */
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 
-/* What the last powers of the particles come from.
- *   Output   part[n][2]: [sigma K^4 L^2], net power from walls, and from surroundings. n and the order are those of the
- *            state of the last call of fibrad_insitu_powers. The rest of each power comes from other particles.
+/* What is not known of the row of each particle, as a fraction of its emission.
+ *   Output   error[n][2]: what passed the cutoff when the row was made, and the estimated error of the row. n and the
+ *            order are those of the state of the last call of fibrad_insitu_powers. The first is 1 for a particle that
+ *            has no row. Both are 0 for a particle that is left out.
  *   Errors   _ARGUMENT
  *            _STATE: no powers were computed since rows were made
  *            _MEMORY
- *   Cost     4 ns per entry, and two messages to each rank in contact */
-int fibrad_insitu_parts(fibrad_insitu *insitu, double (*part)[2]);
-
-/* What is not known of the row of each particle, as a fraction of its emission. n, the order and errors are as for
- * fibrad_insitu_parts.
- *   Output   error[n][2]: what passed the cutoff when the row was made, and the estimated error of the row. The first
- *            is 1 for a particle that has no row. Both are 0 for a particle that is left out.
- *   Errors   as fibrad_insitu_parts
  *   Cost     two messages to each rank in contact */
 int fibrad_insitu_errors(fibrad_insitu *insitu, double (*error)[2]);
 

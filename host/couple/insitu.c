@@ -27,10 +27,10 @@ int fibrad_accuracy_named(const char *name) {
 static bool config_valid(const fibrad_insitu_config *c) {
     const bool directions =
         !c->directions || (c->directions >= FIBRAD_DIRECTIONS_MIN && c->directions <= FIBRAD_DIRECTIONS_MAX);
-    return c->cutoff >= 0 && isfinite(c->cutoff) && c->gather >= 0 && directions && c->paths <= FIBRAD_PATHS_MAX &&
-           c->tolerance >= 0 && isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX &&
-           (c->strict == 0 || c->strict == 1) && (c->one_way == 0 || c->one_way == 1) &&
-           c->accuracy >= FIBRAD_ACCURACY_NORMAL && c->accuracy <= FIBRAD_ACCURACY_HIGH;
+    return c->cutoff >= 0 && isfinite(c->cutoff) && directions && c->paths <= FIBRAD_PATHS_MAX && c->tolerance >= 0 &&
+           isfinite(c->tolerance) && c->threads >= 0 && c->threads <= THREADS_MAX &&
+           (c->strict == 0 || c->strict == 1) && c->accuracy >= FIBRAD_ACCURACY_NORMAL &&
+           c->accuracy <= FIBRAD_ACCURACY_HIGH;
 }
 
 /* Replaces zeroes by the numbers for which they stand. */
@@ -42,7 +42,7 @@ static void complete_config(fibrad_insitu *s) {
     if (!c->directions) c->directions = samples[c->accuracy].directions;
     if (!c->paths) c->paths = samples[c->accuracy].paths;
     if (!c->threads) c->threads = 1;
-    if (c->gather == 0) c->gather = FIBRAD_GATHER_MOST;
+    s->gather = FIBRAD_GATHER_MOST;
 }
 
 static int open_set(fibrad_insitu_set *set, int threads) {

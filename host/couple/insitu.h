@@ -13,7 +13,7 @@
 #include "simple/team.h"
 
 #define FIBRAD_OPENINGS_MAX 6   /* one a side */
-#define FIBRAD_GATHER_MOST  4e6 /* the default of fibrad_insitu_config.gather */
+#define FIBRAD_GATHER_MOST  4e6 /* particles up to which each rank has all while rows are made */
 
 /* What walls exchange with each other and with the surroundings: areas times emissivities times factors [L^2]. */
 typedef struct fibrad_wall_exchange {
@@ -60,6 +60,7 @@ struct fibrad_insitu {
     uint32_t paths_alone; /* paths of a row that does not know all sources */
     double open_error;    /* as in fibrad_exchange_rule */
     double source_paths;  /* paths of all sources over those of all particles, at most */
+    double gather;        /* FIBRAD_GATHER_MOST; tests take less */
     char message[FIBRAD_MESSAGE];
     fibrad_team team;                                  /* the threads, and their work memory */
     fibrad_insitu_set set;                             /* the rows in use */

@@ -154,7 +154,7 @@ static void choose_cutoff(fibrad_insitu_build *b, const double ends[6], double p
     while (!given && cutoff < longest && count_within(b, span, particles, 1.25 * cutoff) <= CUTOFF_COUNT)
         cutoff *= 1.25;
     if (given) cutoff = b->s->config.cutoff;
-    b->whole = cutoff >= longest || (!given && particles <= b->s->config.gather);
+    b->whole = cutoff >= longest || (!given && particles <= b->s->gather);
     b->cutoff = b->whole ? 0 : cutoff;
 }
 

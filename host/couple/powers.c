@@ -206,52 +206,26 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     return FIBRAD_OK;
 }
 
-/* Finds the parts of particles at home: part[own][2]. */
-static void find_parts(const fibrad_insitu *s, double (*part)[2]) {
-    const fibrad_insitu_set *set = &s->set;
-    const double *weight = set->weight.at, *emission = set->emission.at;
-    fibrad_row row;
-    memset(part, 0, set->own * sizeof *part);
-    for (int t = 0; t < s->config.threads; ++t)
-        for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);) {
-            const double own = emission[row.sphere], all = fibrad_row_weight(&row, weight[row.sphere]);
-            for (uint32_t k = 0; k < set->walls; ++k)
-                part[row.sphere][0] += all * row.wall[k] * (set->wall_emission[k] - own);
-            part[row.sphere][1] = all * row.escaped * (set->surroundings_emission - own);
-        }
-}
-
-/* Finds what is not known of the rows of particles at home: error[own][2]. */
-static void find_errors(const fibrad_insitu *s, double (*error)[2]) {
-    const fibrad_insitu_set *set = &s->set;
-    const double *unknown = set->unknown.at;
-    fibrad_row row;
-    for (int t = 0; t < s->config.threads; ++t)
-        for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);)
-            error[row.sphere][0] = unknown[row.sphere], error[row.sphere][1] = row.error;
-}
-
-/* Finds two values of each particle at home, and sends them to the present owners. */
-static int tell_owners(fibrad_insitu *s, void (*find)(const fibrad_insitu *, double (*)[2]), double (*to)[2]) {
+int fibrad_insitu_errors(fibrad_insitu *s, double (*error)[2]) {
     if (!s) return FIBRAD_E_ARGUMENT;
     fibrad_insitu_set *set = &s->set;
     const size_t n = set->now_n;
+    fibrad_row row;
     s->message[0] = 0;
     int status = FIBRAD_OK;
     if (!s->ready || !set->flows)
         status = fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no powers yet, of which this would tell");
-    if (!status && n && !to) status = FIBRAD_E_ARGUMENT;
+    if (!status && n && !error) status = FIBRAD_E_ARGUMENT;
     if (!status) status = fibrad_block_fit(&s->value, 2 * (n + set->own), sizeof(double));
     status = fibrad_agree(s->comm, status, s->message);
     if (status) return status;
-    double(*value)[2] = s->value.at;
+    double(*value)[2] = s->value.at, (*home)[2] = value + n;
+    const double *unknown = set->unknown.at;
     memset(value, 0, n * sizeof *value);
-    find(s, value + n);
+    for (int t = 0; t < s->config.threads; ++t)
+        for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);)
+            home[row.sphere][0] = unknown[row.sphere], home[row.sphere][1] = row.error;
     fibrad_link_reverse(set->present, value[0], 2);
-    if (n) memcpy(to, value, n * sizeof *value);
+    if (n) memcpy(error, value, n * sizeof *value);
     return FIBRAD_OK;
 }
-
-int fibrad_insitu_parts(fibrad_insitu *s, double (*part)[2]) { return tell_owners(s, find_parts, part); }
-
-int fibrad_insitu_errors(fibrad_insitu *s, double (*error)[2]) { return tell_owners(s, find_errors, error); }

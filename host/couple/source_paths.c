@@ -96,15 +96,14 @@ static void list_sources(struct sources *t) {
     }
 }
 
-/* Finds how many paths leave each source. Particles need none if nothing reflects, or if they are not to learn. */
+/* Finds how many paths leave each source. Particles need none if nothing reflects. */
 static void count_paths(struct sources *t) {
     const double paths = t->b->s->config.paths, radius = t->b->radius_mean, particle = 4 * acos(-1) * radius * radius;
     double emits = 0;
     for (uint32_t k = 0; k < t->count; ++k) emits += t->source[k].emits;
     const bool empty = !t->b->to->facts.particles;
     const double most = t->b->s->source_paths * (double)t->b->to->facts.particles * paths / emits;
-    const bool teach = t->b->to->emissive && !t->b->s->config.one_way && !empty;
-    t->b->density = teach ? fmin(PATHS_WORTH * paths / particle, most) : 0;
+    t->b->density = t->b->to->emissive && !empty ? fmin(PATHS_WORTH * paths / particle, most) : 0;
     for (uint32_t k = 0; k < t->count; ++k) {
         struct source *source = &t->source[k];
         const double count =
@@ -208,9 +207,9 @@ static int keep_known(const struct sources *t, const bool *has) {
     return FIBRAD_OK;
 }
 
-static int make_sources(struct sources *t, const fibrad_particle *particle) {
+static int make_sources(struct sources *t) {
     fibrad_insitu_build *b = t->b;
-    int status = fibrad_insitu_scene(b, particle, t->n, NULL);
+    int status = fibrad_insitu_scene(b, b->to->particle.at, t->n, NULL);
     status = fibrad_agree(b->s->comm, status, b->s->message);
     if (status) return status;
     const fibrad_exchange_rule rule = fibrad_insitu_rule(b, t->n);
@@ -229,41 +228,24 @@ static int make_sources(struct sources *t, const fibrad_particle *particle) {
     bool has[FIBRAD_WALLS_MAX + 1];
     mark_rows(t, has);
     find_exchange(t, has, &b->to->wall_exchange);
-    b->knows = !b->s->config.one_way;
-    b->knows_all = b->knows && have_all(t, has);
-    return fibrad_agree(b->s->comm, b->knows ? keep_known(t, has) : FIBRAD_OK, b->s->message);
-}
-
-/* All particles, those of this rank first: those of the next scene, or gathered if that has a cutoff. */
-static int find_all(struct sources *t, fibrad_block *all) {
-    fibrad_insitu_build *b = t->b;
-    size_t others = b->halo;
-    int status = FIBRAD_OK;
-    t->first = b->lower;
-    if (!b->whole) {
-        status = fibrad_agree(b->s->comm, fibrad_block_fit(all, b->own, sizeof(fibrad_particle)), b->s->message);
-        if (!status && b->own) memcpy(all->at, b->to->particle.at, b->own * sizeof(fibrad_particle));
-        if (!status) status = fibrad_gather(b->s->comm, all, b->own, &others, &t->first);
-    }
-    t->n = b->own + others;
-    return status;
+    b->knows = true;
+    b->knows_all = have_all(t, has);
+    return fibrad_agree(b->s->comm, keep_known(t, has), b->s->message);
 }
 
 int fibrad_insitu_sources(fibrad_insitu_build *b) {
-    fibrad_block all = {0};
     const uint32_t openings = b->openings;
     b->to->wall_exchange = (fibrad_wall_exchange){0};
-    if ((!b->to->facts.particles && !b->bed->walls) ||
-        (!b->whole && (double)b->to->facts.particles > b->s->config.gather))
-        return FIBRAD_OK;
+    if ((!b->to->facts.particles && !b->bed->walls) || !b->whole || b->s->config.cutoff > 0) return FIBRAD_OK;
     close_bed(b);
     struct sources *t = calloc(1, sizeof *t);
     int status = fibrad_agree(b->s->comm, t ? FIBRAD_OK : FIBRAD_E_MEMORY, b->s->message);
-    if (!status) t->b = b, status = find_all(t, &all);
-    if (!status) status = make_sources(t, b->whole ? b->to->particle.at : all.at);
+    if (!status) {
+        t->b = b, t->n = b->own + b->halo, t->first = b->lower;
+        status = make_sources(t);
+        free(t->hits);
+    }
     b->openings = openings;
-    fibrad_block_free(&all);
-    if (t) free(t->hits);
     free(t);
     return status;
 }

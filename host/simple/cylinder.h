@@ -14,7 +14,9 @@ static inline int cylinder_across(const fibrad_wall *wall, int k) {
 
 /* The distance of a point from the axis of a cylinder. */
 static inline double cylinder_distance(const fibrad_wall *wall, const double at[3]) {
-    return hypot(at[cylinder_across(wall, 0)] - wall->cylinder.x, at[cylinder_across(wall, 1)] - wall->cylinder.y);
+    const double u = at[cylinder_across(wall, 0)] - wall->cylinder.x;
+    const double v = at[cylinder_across(wall, 1)] - wall->cylinder.y;
+    return sqrt(u * u + v * v);
 }
 
 #endif

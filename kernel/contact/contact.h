@@ -18,7 +18,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-
 typedef enum fibrad_contact_kind {
     FIBRAD_CONTACT_NONE,  /* the node has no contacts */
     FIBRAD_CONTACT_GIVEN, /* its temperature is given, or nothing is known of it yet */

@@ -29,7 +29,7 @@ awk 'BEGIN {
 sed 's/^create_atoms.*/include atoms/' "$example" >bed
 dump='dump end all custom 500 END id f_Temp f_heatSource'
 format='dump_modify end sort id format "%d %.17g %.17g"'
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
 # run NAME RANKS MOVE STEPS OPTIONS...: the driver, its output in NAME
 run() {
@@ -46,7 +46,7 @@ value() { sed -n "s/^$2 //p" "$1"; } # FILE KEY
 energy() { # NAME STEPS
     mean=$(awk -v step="$2" '$1 == step { mean = $4 } END { print mean }' "$1")
     echo "$(value "$1" heat_before) $(value "$1" heat_after) $(value "$1" radiation_particles) $mean \
-        $(value "$1" radiation_zlo) $(value "$1" radiation_surroundings)" | awk -v name="$1" -v steps="$2" '{
+        $(value "$1" radiation_zmin) $(value "$1" radiation_surroundings)" | awk -v name="$1" -v steps="$2" '{
         off = ($2 - $1 - $3 - $4 * (steps + 1) * 2e-5) / ($2 - $1)
         lost = ($3 + $5 + $6) / $3
         printf "%s: gained %.3f J, %.3f J by radiation; energy off by %.1e, radiation by %.1e\n", name, $2 - $1, $3, off, lost
@@ -88,7 +88,7 @@ echo "$(value joined2 wall_1_F) $(value serial wall_zmin_F)" |
 for axis in x y; do
     "$fibrad" factors bed.csv --emissivity 0.8 --wall ${axis}cylinder:.024,.018,.025:emissivity=.9 \
         --wall ${axis}min:at=0:emissivity=.9,${axis}max:at=.048:emissivity=.9 --raw >alone 2>/dev/null || complain "no factors of a bed in ${axis}cylinder"
-    radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder=600,.9,.024,.018,.025 --wall ${axis}lo=600,.9 --wall ${axis}hi=600,.9"
+    radiation="--emissivity 0.8 --surroundings 300 --wall ${axis}cylinder:.024,.018,.025:temperature=600:emissivity=.9,${axis}min:temperature=600:emissivity=.9,${axis}max:temperature=600:emissivity=.9"
     run round 2 'setforce 0 0 0' 1 -in bed --write round
     "$fibrad" join round.0.rows round.1.rows --raw -o round.csv >joined_round || complain "${axis}cylinder: no rows"
     echo "$(value joined_round wall_1_F) $(value alone wall_${axis}cylinder_F) $(value joined_round wall_3_F) $(value alone wall_${axis}max_F)" |
@@ -97,7 +97,7 @@ for axis in x y; do
             round = $1 / $2 - 1; end = $3 / $4 - 1
             exit !(NF == 4 && round * round < 1e-4 && end * end < 4e-4) }' || complain "${axis}cylinder takes something else"
 done
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
 # A source of the script's own stays: 1 W in each of 294 particles for 200 steps of 2e-5 s
 { cat bed && echo 'run 0' && echo 'set group all property/atom heatSource 1'; } >source
@@ -124,7 +124,7 @@ awk -v came="$(value coming heat_came)" -v gone="$(value coming heat_gone)" -v o
 # Particles that conduct, at 1000 K on a floor of 1200 K: the powers of fibrad heat, where one temperature a particle
 # would bring 15 % more; energy, at temperatures that rise
 sed 's/initial_temperature 300/initial_temperature 1000/' bed >warm
-radiation='--emissivity 0.8 --surroundings 900 --wall zlo=1200,0.9 --solid-conductivity 0.68'
+radiation='--emissivity 0.8 --surroundings 900 --wall zmin:temperature=1200:emissivity=0.9 --solid-conductivity 0.68'
 "$fibrad" heat bed.csv --emissivity 0.8 --temperature 1000 --ambient 900 --wall zmin:at=0:temperature=1200:emissivity=0.9 \
     --length-unit m --directions 600 --solid-conductivity 0.68 -o heat.csv >/dev/null 2>&1 || complain "no powers of fibrad heat"
 for ranks in 1 2; do
@@ -140,7 +140,7 @@ for ranks in 1 2; do
 done
 run warming 2 'setforce 0 0 0' 600 -in warm --rows 300
 energy warming 600
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
 # Contacts that the driver conducts, against those of LIGGGHTS, whose spots conduct sqrt(pi) times as much: temperatures,
 # the same for 1 and 2 ranks; energy with a floor that conducts, too
@@ -150,7 +150,7 @@ flux_quantity heatFlux source_quantity heatSource capacity_quantity thermalCapac
 sed -e "s|^fix heat .*|$transport|" -e '/conducted/d' plain >free
 echo 'thermo_style custom step c_mean c_hottest' >>free
 for bed in plain free; do { echo 'run 0' && echo 'set atom 1*100 property/atom Temp 900' && echo "$dump" | sed "s/500 END/300 end_$bed/" && echo "$format"; } >>$bed; done
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9,-0.001 --every 1 --rows 300'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9:at=-0.001 --every 1 --rows 300'
 run own_contacts 1 'setforce 0 0 0' 300 -in plain
 for ranks in 1 2; do
     sed "s/end_free/end_free$ranks/" free >free$ranks
@@ -161,14 +161,14 @@ for ranks in 1 2; do
             printf "%d rank(s): contacts of the driver and of LIGGGHTS part by %.1e K\n", ranks, sqrt(most)
             exit !(n == 588 && moved > 200 && most < 1e-16) }' || complain "contacts conduct otherwise than those of LIGGGHTS"
 done
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9 --capacity zlo=3'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9:capacity=3'
 run touched 2 nve/sphere 300 -in free --contacts '5 hertz gas 0.03' --rows 100 --every 10
-echo "$(value touched heat_before) $(value touched heat_after) $(value touched radiation_surroundings) $(value touched temperature_zlo) \
-    $(value touched contacts_zlo) $(value touched contacts_particles)" | awk '{
+echo "$(value touched heat_before) $(value touched heat_after) $(value touched radiation_surroundings) $(value touched temperature_zmin) \
+    $(value touched contacts_zmin) $(value touched contacts_particles)" | awk '{
     lost = ($2 - $1 + $3 + 3 * ($4 - 1200)) / ($2 - $1)
     printf "contacts bring %.3f J; energy off by %.1e\n", $6, lost
     exit !(NF == 6 && $6 > 0.01 && ($5 + $6)^2 < 1e-24 * $6 * $6 && lost * lost < 1e-22) }' || complain "contacts: energy is not kept"
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
 # Meshes of the script. A box of triangles against planes in its place
 quad() { # NAME CORNER CORNER CORNER CORNER: two triangles
@@ -191,22 +191,22 @@ box | sed '/solid/d' | { echo solid box && cat && echo endsolid box; } >box.stl
 with_mesh() { awk -v fixes="$1" '/^fix heat/ { print fixes } { print }' bed; }
 with_mesh 'fix vessel all mesh/surface file box.stl type 1 temperature 1200' >meshed
 only_planes=$radiation
-for side in zhi xlo xhi ylo yhi; do only_planes="$only_planes --wall $side=1200,.9"; done
+for side in zmax xmin xmax ymin ymax; do only_planes="$only_planes --wall $side:temperature=1200:emissivity=.9"; done
 # Without a lid: as with a black one as hot as the surroundings; refused without the word
-sides=$(echo "$only_planes" | sed 's/ --wall zhi=[^ ]*//')
-radiation="$sides --wall zhi=300,1"
+sides=$(echo "$only_planes" | sed 's/ --wall zmax:[^ ]*//')
+radiation="$sides --wall zmax:temperature=300:emissivity=1"
 run black_lid 1 'setforce 0 0 0' 200 -in bed
-radiation="$sides --wall zhi=open,.06"
+radiation="$sides --wall zmax:open:at=.06"
 for ranks in 1 2; do run open$ranks $ranks 'setforce 0 0 0' 200 -in bed; done
 echo "$(value black_lid radiation_particles) $(value open1 radiation_particles) $(value open2 radiation_particles) \
-    $(value black_lid radiation_zhi) $(value open1 radiation_surroundings)" | awk '{
+    $(value black_lid radiation_zmax) $(value open1 radiation_surroundings)" | awk '{
     printf "below a black lid %.5f J, an opening %.5f J; the lid gets %.5f J, the surroundings %.5f J\n", $1, $2, $4, $5
     off = $2 / $1 - 1; ranks = $2 / $3 - 1; lid = $5 / $4 - 1
     exit !(NF == 5 && off * off < 1e-24 && ranks * ranks < 1e-24 && lid * lid < 1e-24) }' || complain "an opening is no black lid"
 radiation=$only_planes
 run planes 1 'setforce 0 0 0' 200 -in bed
 radiation='--emissivity 0.8 --surroundings 300'
-for ranks in 1 2; do run mesh$ranks $ranks 'setforce 0 0 0' 200 -in meshed --mesh vessel=0.9; done
+for ranks in 1 2; do run mesh$ranks $ranks 'setforce 0 0 0' 200 -in meshed --wall mesh:vessel:emissivity=0.9; done
 echo "$(value planes radiation_particles) $(value mesh1 radiation_particles) $(value mesh2 radiation_particles) \
     $(value mesh1 radiation_vessel)" | awk '{
     printf "six planes bring %.5f J, twelve triangles %.5f J\n", $1, $2
@@ -222,13 +222,13 @@ fix lift all move/mesh mesh lid linear 0 0 5' >lifted
 with_mesh 'fix lid all mesh/surface file low.stl type 1' >low
 with_mesh 'fix lid all mesh/surface file high.stl type 1' >high
 for bed in low high lifted; do
-    run lid_$bed 2 'setforce 0 0 0' 100 -in $bed --every 100 --rows 100 --mesh lid=900,0.9:both --write $bed
+    run lid_$bed 2 'setforce 0 0 0' 100 -in $bed --every 100 --rows 100 --wall mesh:lid:temperature=900:emissivity=0.9:both --write $bed
     "$fibrad" join $bed.0.rows $bed.1.rows --raw -o $bed.csv >joined_$bed || complain "$bed: no rows"
 done
 echo "$(value joined_low wall_1_F) $(value joined_high wall_1_F) $(value joined_lifted wall_1_F)" | awk '{
     printf "the lid takes %.5f, higher %.5f, lifted %.5f\n", $1, $2, $3
     off = $3 / $2 - 1; exit !(NF == 3 && $1 > 1.2 * $2 && off * off < 1e-8) }' || complain "rows do not follow a mesh that moves"
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
 # A drum of triangles that turns once and stores heat. Its temperature follows from factors of `fibrad factors` of
 # frames, too, and what particles and drum lose goes to the ends. Both sides are the wall, since pebbles in the corners
@@ -249,9 +249,9 @@ sed -e '/^fix \(floor\|front\|back\)/d' -e 's/thermalCapacity peratomtype 5/ther
     -e '/^fix heat/i fix drum all mesh/surface file drum.stl type 1\nfix shell all wall/gran model hertz tangential history mesh n_meshes 1 meshes drum\nfix turn all move/mesh mesh drum rotate origin .024 .024 .024 axis 1 0 0 period .2' \
     "$example" >drum
 { echo 'dump frames all custom 1000 *.frame id x y z radius f_Temp' && echo 'dump shells all mesh/stl 1000 *.shell drum'; } >>drum
-radiation='--emissivity 0.8 --surroundings 300 --wall xlo=600,.9 --wall xhi=600,.9'
-run turning 2 nve/sphere 10000 -in drum --rows 500 --mesh drum=1200,.7:both --capacity drum=.5
-echo "$(value turning heat_before) $(value turning heat_after) $(value turning radiation_xlo) $(value turning radiation_xhi) \
+radiation='--emissivity 0.8 --surroundings 300 --wall xmin:temperature=600:emissivity=.9,xmax:temperature=600:emissivity=.9'
+run turning 2 nve/sphere 10000 -in drum --rows 500 --wall mesh:drum:temperature=1200:emissivity=.7:both:capacity=.5
+echo "$(value turning heat_before) $(value turning heat_after) $(value turning radiation_xmin) $(value turning radiation_xmax) \
     $(value turning temperature_drum)" | awk '{
     lost = ($2 - $1 + $3 + $4 + .5 * ($5 - 1200)) / ($2 - $1)
     printf "a drum cools to %.3f K; energy off by %.1e\n", $5, lost
@@ -274,7 +274,7 @@ done | awk -v found="$(value turning temperature_drum)" '
         off = (found - t) / (1200 - t)
         printf "by factors of frames to %.3f K, %.2g of its change\n", t, off
         exit !(NR == 11 && off * off < 1e-4) }' || complain "the drum has another temperature than by factors of frames"
-radiation='--emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9'
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
 
 # Messages: exit status, words; one line of the driver's, whatever the number of ranks. The ranks write messages into a
 # file themselves: mpirun now and then loses the last line of a rank that fails.
@@ -301,47 +301,46 @@ refuse 1 2 "contacts: '5 scale' is not K" -in bed --contacts '5 scale'
 refuse 1 2 "contacts excludes" -in bed --emissivity 1 --surroundings 300 --steps 1 --contacts 5 --solid-conductivity 5
 # shellcheck disable=SC2086
 refuse 2 3 "fix heat/gran/conduction of the script conducts through contacts already" -in bed $radiation --steps 1 --contacts 5
-refuse 1 2 "none of SIDE=T,E" -in bed --wall floor=300,1
-refuse 1 2 "neither ID=E" -in bed --mesh lid=0.9:up
-refuse 1 2 "'lid=700,0.9' is of a mesh that was named already" -in bed --mesh lid=0.9 --mesh lid=700,0.9
-refuse 1 2 "'zlo=0' is not NAME=C" -in bed --capacity zlo=0
+refuse 1 2 "'floor' is no wall" -in bed --wall floor:temperature=300
+refuse 1 2 "mesh:lid: 'up' is of no use here" -in bed --wall mesh:lid:up
+refuse 1 2 "is now --wall mesh:NAME" -in bed --mesh lid=0.9
+refuse 1 2 "is now a word of the wall" -in bed --capacity zlo=0
+refuse 1 2 "capacity: 0 is not within" -in bed --wall zmin:capacity=0
 # shellcheck disable=SC2086
-refuse 2 2 "capacity zhi: no --wall or --mesh" -in bed $radiation --steps 1 --capacity zhi=5
-# shellcheck disable=SC2086
-refuse 2 3 "wall zlo cools down in" -in bed $radiation --steps 1 --capacity zlo=1e-6
+refuse 2 3 "too long for wall zmin" -in bed --emissivity 0.8 --surroundings 300 --steps 1 --wall zmin:temperature=1200:capacity=1e-6
 refuse 1 2 "'fine' is not one of low, normal and high" -in bed --accuracy fine
 # shellcheck disable=SC2086
-refuse 1 2 "--accuracy excludes --tolerance" -in bed $radiation --steps 1 --tolerance 0.01 --accuracy high
+refuse 1 3 "accuracy excludes tolerance" -in bed $radiation --steps 1 --tolerance 0.01 --accuracy high
 refuse 1 2 "not a multiple" -in bed --emissivity 1 --surroundings 300 --steps 1 --every 20 --rows 30
 # before the script runs
 { cat bed && echo 'run 0' && echo 'shell touch has_run'; } >runs
 sed 's/^boundary f f f/boundary f f fm/' runs >open_lid
 refuse 2 3 "2 emissivities for 1 types" -in runs --emissivity .5,.6 --surroundings 300 --steps 1
 # shellcheck disable=SC2086
-refuse 1 3 "wall zhi: the box has no fixed end there" -in open_lid $radiation --wall zhi=300,1 --steps 1
+refuse 1 3 "wall zmax: the box has no fixed end there" -in open_lid $radiation --wall zmax:temperature=300 --steps 1
 test ! -e has_run || complain "the script runs before options are refused"
 # shellcheck disable=SC2086
 refuse 2 3 "2 conductivities of the solid for 1 types" -in bed $radiation --solid-conductivity 5,6 --steps 1
 # shellcheck disable=SC2086
 refuse 2 3 "step 0: particle [0-9]*: its relative conductivity must be at least 1e-06, not " -in bed $radiation --solid-conductivity 1e-9 --steps 1
 # shellcheck disable=SC2086
-refuse 2 3 "cools down in" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
+refuse 2 3 "steps of heat are too long for particle" -in bed $radiation --steps 1 --every 1000000 --rows 1000000
 # shellcheck disable=SC2086
-refuse 2 3 "step 0: .*wall" -in bed $radiation --strict --wall zhi=300,1,0.02 --steps 1
+refuse 2 3 "step 0: .*wall" -in bed $radiation --strict --wall zmax:temperature=300:at=0.02 --steps 1
 # shellcheck disable=SC2086
 # shellcheck disable=SC2086  # options
-refuse 2 3 "step 0: .*--wall zhi=open" -in bed $sides --steps 1
-refuse 1 2 "neither numbers behind =" -in bed --wall zhi=opened
-refuse 1 2 "'zhi=300' has too few numbers" -in bed --wall zhi=300
-refuse 1 2 "'zhi=300,1,2,3' has too many numbers" -in bed --wall zhi=300,1,2,3
-refuse 1 2 "does not have five numbers" -in bed --wall xcylinder=300,1,2
+refuse 2 3 "step 0: .*zmax open" -in bed $sides --steps 1
+refuse 1 2 "wall: zhi=open,.06 is now zhi:open:at=.06" -in bed --wall=zhi=open,.06
+refuse 1 2 "zlo=300,1 is now zlo:temperature=T:emissivity=E" -in bed --wall zlo=300,1
+refuse 1 3 "wall zmax: it needs a temperature" -in bed $radiation --wall zmax --steps 1
+refuse 1 2 "xcylinder: needs Y,Z,R" -in bed --wall xcylinder:1,2
 refuse 1 2 "'-1' is not a length of 0 or more" -in bed --cutoff -1
 # shellcheck disable=SC2086  # options
-refuse 2 3 "no such fix mesh/surface" -in bed $radiation --mesh lid=0.9 --steps 1
+refuse 2 3 "no such fix mesh/surface" -in bed $radiation --wall mesh:lid:emissivity=0.9 --steps 1
 # shellcheck disable=SC2086
-refuse 2 3 "gives no temperature" -in low $radiation --mesh lid=0.9 --steps 1
+refuse 2 3 "gives no temperature" -in low $radiation --wall mesh:lid:emissivity=0.9 --steps 1
 # shellcheck disable=SC2086
-refuse 2 3 "sees the back" -in meshed $radiation --mesh vessel=0.9:normals --steps 1
+refuse 2 3 "sees the back" -in meshed $radiation --wall mesh:vessel:emissivity=0.9:normals --steps 1
 grep -v '^fix heat\|f_\|c_' bed >cold
 # shellcheck disable=SC2086
 refuse 2 3 "no fix heat/gran/conduction" -in cold $radiation --steps 1

@@ -1,5 +1,5 @@
 #!/bin/bash
-# check_pages.sh - the scripts of docs/lammps.md and docs/coupling.md run as they stand there, with files of tests in the
+# check_pages.sh - the scripts of docs/lammps.md run as they stand there, with files of tests in the
 # place of the reader's. SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}" "${MPICC:=mpicc}" "${MPIRUN:=mpirun}" "${LMP:=lmp}"
@@ -34,7 +34,7 @@ lammps() {
         ! grep -q '^ERROR' "$work/$2.log"
 }
 
-# ---- docs/lammps.md ---------------------------------------------------------------------------------------------------
+# ---- fix fibrad -------------------------------------------------------------------------------------------------------
 block lammps.md read_data | sed "s|/path/to/fibrad/build|$root/$BUILD|; s|/path/to/fibrad|$root|; s/run  *100000/run 200/" >"$work/whole"
 lammps 2 whole && grep -q 'fix fibrad: rows made' "$work/whole.log"
 verdict "the script of docs/lammps.md" $?
@@ -70,7 +70,7 @@ awk 'function corner(k) { return (k%2 ? 6499 : 0) " " (int(k/2)%2 ? 6499 : 0) " 
         print "endsolid"
     }' | tee >(sed -n '/solid hopper/,/^endsolid/p' >"$work/hopper.stl") |
     sed -n '/solid lid/,$p' | awk '/vertex/ { for (k = 2; k < 5; k++) $k /= 1000 } { print }' >"$work/tube.stl"
-{ cat "$work/before" && block lammps.md "wall mesh hopper.stl" && echo 'run 100'; } >"$work/meshes"
+{ cat "$work/before" && block lammps.md "wall mesh hopper.stl temperature" && echo 'run 100'; } >"$work/meshes"
 lammps 2 meshes && grep -q 'is of wall tube, 2 triangles' "$work/meshes.log"
 verdict "walls of triangles" $?
 cp "$work/tube.stl" "$work/drum.stl"
@@ -82,7 +82,7 @@ verdict "a mesh that turns" $?
 lammps 2 contacts && grep -q 'through contacts' "$work/contacts.log"
 verdict "contacts" $?
 
-# ---- docs/coupling.md -------------------------------------------------------------------------------------------------
+# ---- your own code -------------------------------------------------------------------------------------------------------
 # the reader's program is the example
 sed 's|couple/fibrad_couple.h|fibrad_couple.h|' host/couple/example.c >"$work/mycode.c"
 {
@@ -91,12 +91,12 @@ set -e
 mpicc() { command "$MPICC" "$@" -o "$work/own"; }
 mpirun() { command "$MPIRUN" "$@"; }
 END
-    block coupling.md mycode.c | grep -v '^make' | sed "s|build/|$BUILD/|g; s|mycode.c|\"\$work/mycode.c\"|"
+    block lammps.md mycode.c | grep -v '^make' | sed "s|build/|$BUILD/|g; s|mycode.c|\"\$work/mycode.c\"|"
     echo "mpirun -np 2 $work/own"
 } >"$work/commands"
 # shellcheck disable=SC1091
 (. "$work/commands") >"$work/commands.out" 2>&1 && test "$(sort -u "$work/commands.out" | wc -l)" -eq 1
-verdict "the commands of docs/coupling.md" $?
+verdict "the commands of docs/lammps.md" $?
 cat >"$work/loop.c" <<END
 #include "fibrad_couple.h"
 static double x[6] = {0, 0, 0, 3, 0, 0}, radius[2] = {1, 1}, emissivity[2] = {1, 1}, t[2] = {1000, 300}, power[2];
@@ -109,7 +109,7 @@ int main(int count, char **argument) {
     fibrad_insitu_state state = {.n = 2, .id = id, .temperature = t};
     uint64_t step, steps = 3000;
     MPI_Init(&count, &argument);
-$(block coupling.md move_particles)
+$(block lammps.md move_particles)
     fibrad_insitu_free(radiation);
     MPI_Finalize();
     return !(t[0] < 999 && t[1] > 300 && power[0] < 0 && power[1] > 0);
@@ -117,5 +117,5 @@ $(block coupling.md move_particles)
 END
 "$MPICC" -Ikernel -Ihost/couple "$work/loop.c" "$BUILD/couple/libfibrad_couple.a" "$BUILD/libfibrad.a" -fopenmp -lm -o "$work/loop" &&
     run_mpi 1 "$work/loop"
-verdict "the loop of docs/coupling.md" $?
+verdict "the loop of docs/lammps.md" $?
 exit $faults

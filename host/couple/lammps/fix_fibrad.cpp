@@ -41,379 +41,262 @@ static bool is_number(const std::string &word) {
     return !word.empty() && !*end;
 }
 
+[[noreturn]] void FixFibrad::stop(const std::string &sentence) const {
+    error->all(FLERR, "fix fibrad: " + sentence);
+    abort(); // old LAMMPS does not say that `all` never returns
+}
+
+void FixFibrad::need_good(bool good) const {
+    if (!good) stop(radiation.fault);
+}
+
 // ---- the command ------------------------------------------------------------------------------------------------
 
-// A walk along the words of the command behind the style.
-class FixFibrad::Words {
-  public:
-    Words(LAMMPS *lammps, int count, char **word) : lmp(lammps), words(word + 2, word + count) {}
-    bool more() const { return at < words.size(); }
-    bool next_is(const char *word) const { return more() && words[at] == word; }
-    // Whether the next word is this one. If so, moves behind it.
-    bool take(const char *word) {
-        const bool is = next_is(word);
-        at += is;
-        return is;
-    }
-    std::string next() {
-        if (!more()) lmp->error->all(FLERR, "fix fibrad: a word is missing after `" + words.back() + "`");
-        return words[at++];
-    }
-    // Takes a number from low to high.
-    double number(const std::string &what, double low, double high) {
-        double value;
-        const std::string before = words[at - 1], word = more() ? next() : std::string();
-        if (setting_number(word, low, high, &value)) return value;
-        if (word.empty()) lmp->error->all(FLERR, "fix fibrad: " + what + " is missing after `" + before + "`");
-        if (!is_number(word))
-            lmp->error->all(FLERR,
-                            "fix fibrad: " + what + " must be a number, not `" + word + "`: is a value missing?");
-        const std::string bounds = low > 0 && high >= 1e300 ? "above 0" : text("in [%g, %g]", low, high);
-        lmp->error->all(FLERR, "fix fibrad: " + what + " must be " + bounds + ", not " + word);
-        return value;
-    }
-    std::string peek() const { return more() ? words[at] : ""; }
-    bool next_is_number() const { return more() && is_number(words[at]); }
-    bool next_begins(const char *with) const { return more() && words[at].compare(0, 2, with) == 0; }
-    int count(const char *what, int low) {
-        int value;
-        const std::string word = next();
-        if (!setting_whole(word, low, INT_MAX, &value))
-            lmp->error->all(FLERR,
-                            text("fix fibrad: %s must be a whole number, at least %d, not `", what, low) + word + "`");
-        return value;
-    }
+bool FixFibrad::take(const char *what) {
+    const bool is = at < word.size() && word[at] == what;
+    at += is;
+    return is;
+}
 
-    bool yes_or_no() {
-        const std::string word = next();
-        if (word != "yes" && word != "no") lmp->error->all(FLERR, "fix fibrad: say yes or no, not `" + word + "`");
-        return word == "yes";
-    }
+std::string FixFibrad::peek() const { return at < word.size() ? word[at] : ""; }
 
-  private:
-    LAMMPS *lmp;
-    std::vector<std::string> words;
-    size_t at = 1;
-};
+std::string FixFibrad::next() {
+    if (at == word.size()) stop("a word is missing after `" + word.back() + "`");
+    return word[at++];
+}
+
+// Takes a number from low to high.
+double FixFibrad::number(const std::string &what, double low, double high) {
+    double value;
+    const std::string behind = word[at - 1], given = at < word.size() ? next() : std::string();
+    if (radiation_number(given.c_str(), low, high, &value)) return value;
+    if (given.empty()) stop(what + " is missing after `" + behind + "`");
+    if (given == "table") stop("a table is now " + what + " @FILE");
+    if (!is_number(given)) stop(what + " must be a number, not `" + given + "`: is a value missing?");
+    stop(what + " must be " + (low > 0 && high >= 1e300 ? "above 0" : text("in [%g, %g]", low, high)) + ", not " +
+         given);
+}
+
+int FixFibrad::count(const char *what, int low) {
+    int64_t value;
+    const std::string given = next();
+    if (!radiation_whole(given.c_str(), low, INT_MAX, &value))
+        stop(text("%s must be a whole number, at least %d, not `", what, low) + given + "`");
+    return (int)value;
+}
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
-    : Fix(lammps, narg, arg), spots(), temperature(), kept_bit(0), surroundings{-1, ""}, parts(false), errors(false),
-      columns(1), moved(0), sampling(false), accuracy(false), sigma(0), initial(0), config(), meshes(), moving(false),
-      insitu(nullptr), totals(), conducted(), warned(false), wall_warned(false), told(), set_up(-1), powers_at(0),
-      lost(0), restarted(false), begun(0), before(), rows_made(0), rows_followed(0), powers_found(0) {
+    : Fix(lammps, narg, arg), word(arg + 3, arg + narg), at(0), temperature(), kept_bit(0), errors(false), columns(1),
+      moved(0), initial(0), radiation(), moving(false), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
+      before() {
     const double huge = 1e300;
-    Words words(lmp, narg, arg);
-    config.seed = 1; // the default of docs/lammps.md
-    heat_every = words.count("NEVERY", 0);
-    rows_every = words.count("NROWS", 1);
-    if (heat_every && rows_every % heat_every)
-        error->all(FLERR, std::string("fix fibrad: NROWS must be a multiple of NEVERY"));
+    radiation.config.seed = 1; // the default of docs/lammps.md
+    radiation.surroundings = NAN;
+    radiation.files = true;
+    radiation.place_meshes = [](void *fix) { ((FixFibrad *)fix)->place_meshes(); };
+    radiation.say = [](void *fix, const char *sentence, bool warning) {
+        FixFibrad *self = (FixFibrad *)fix;
+        const std::string line = std::string("fix fibrad: ") + sentence;
+        if (warning && self->comm->me == 0) self->error->warning(FLERR, line);
+        if (!warning) self->say(line);
+    };
+    radiation.simulation = this;
+    const bool known_units = radiation_units(&radiation, update->unit_style);
+    heat_every = count("NEVERY", 0);
+    rows_every = count("NROWS", 1);
+    radiation.heats = heat_every > 0;
+    if (heat_every && rows_every % heat_every) stop("NROWS must be a multiple of NEVERY");
 
-    while (words.more()) {
-        const std::string key = words.next();
+    while (at < word.size()) {
+        const std::string key = next();
         if (key == "emissivity")
-            emissivity = read_property(words, "the emissivity", 0, 1);
+            emissivity = read_property("the emissivity", 0, 1);
         else if (key == "cp")
-            cp = read_property(words, "the heat capacity", 1e-300, huge);
+            cp = read_property("the heat capacity", 1e-300, huge);
         else if (key == "solid")
-            solid = read_property(words, "the conductivity of the solid", 1e-300, huge);
+            solid = read_property("the conductivity of the solid", 1e-300, huge);
         else if (key == "contacts")
-            read_contacts(words);
+            read_contacts();
         else if (key == "surroundings")
-            surroundings = read_kelvins(words, "the temperature of the surroundings");
+            read_surroundings();
         else if (key == "wall")
-            read_wall(words);
+            read_wall();
         else if (key == "temperature")
-            read_temperature(words);
+            read_temperature();
         else if (key == "group2")
-            read_group(words);
+            read_group();
         else if (key == "initial")
-            initial = words.number("the initial temperature", 0, huge);
-        else if (setting_named(key))
-            read_setting(words, *setting_named(key));
+            initial = number("the initial temperature", 0, huge);
         else if (key == "sigma")
-            sigma = words.number("sigma", 0, huge);
+            radiation.sigma = number("sigma", 0, huge);
         else if (key == "rows")
-            rows_file = words.next();
-        else if (key == "parts")
-            parts = words.yes_or_no();
+            rows_file = next();
         else if (key == "errors")
-            errors = words.yes_or_no();
+            errors = yes_or_no();
         else if (key == "moved")
-            moved = words.number("the distance that particles may move", 0, huge);
-        else if (is_number(key))
-            error->all(FLERR, "fix fibrad: `" + key + "` is a number too many, or its keyword is missing");
+            moved = number("the distance that particles may move", 0, huge);
         else
-            error->all(FLERR, "fix fibrad: there is no keyword `" + key + "`");
+            read_option(key);
     }
-    if (accuracy && sampling)
-        error->all(FLERR, std::string("fix fibrad: `accuracy` excludes `directions`, `paths` and `tolerance`"));
-    if (!emissivity.given()) error->all(FLERR, std::string("fix fibrad: `emissivity` is missing"));
-    for (const char *word : {solid.given() ? "solid" : "", contact.given() ? "contacts" : "", errors ? "errors" : "",
-                             moved > 0 ? "moved" : ""})
-        if (*word && !heat_every)
-            error->all(FLERR, text("fix fibrad: `%s` needs temperatures: NEVERY must be above 0", word));
-    if (solid.given() && contact.given())
-        error->all(FLERR,
-                   std::string("fix fibrad: `contacts` needs particles of one temperature each, without `solid`"));
-    if (!emissivity.table.empty() && !heat_every)
-        error->all(FLERR, std::string("fix fibrad: `table` needs temperatures: NEVERY must be above 0"));
-    if (heat_every && surroundings.variable.empty() && surroundings.value < 0)
-        error->all(
-            FLERR,
-            std::string("fix fibrad: `surroundings T` is missing, the temperature of what surrounds the particles"));
-    if (sigma == 0) {
-        if (!strcmp(update->unit_style, "si"))
-            sigma = FIBRAD_STEFAN_BOLTZMANN;
-        else if (!strcmp(update->unit_style, "cgs"))
-            sigma = 1e3 * FIBRAD_STEFAN_BOLTZMANN;
-        else if (heat_every)
-            error->all(FLERR, std::string("fix fibrad: units ") + update->unit_style +
-                                  " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
-    }
+    if (!emissivity.given()) stop("`emissivity` is missing");
+    for (const char *needs : {solid.given() ? "solid" : "", contact.given() ? "contacts" : "", errors ? "errors" : "",
+                              moved > 0 ? "moved" : "", emissivity.table.empty() ? "" : "@FILE"})
+        if (*needs && !heat_every) stop(text("`%s` needs temperatures: NEVERY must be above 0", needs));
+    if (solid.given() && contact.given()) stop("`contacts` needs particles of one temperature each, without `solid`");
+    if (!known_units && heat_every && radiation.sigma == 0)
+        stop(std::string("units ") + update->unit_style +
+             " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
+    if (!surroundings.empty()) radiation.surroundings = 0; // until the variable is evaluated
+    need_good(radiation_begin(&radiation, world, domain->periodicity));
+    name_walls();
 
-    columns = 1 + (parts ? 3 + contact.given() : 0) + (errors ? 2 : 0);
+    columns = errors ? 3 : 1;
     dynamic_group_allow = 1;
     create_attribute = 1;
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = columns > 1 ? columns : 0;
-    size_vector = 5 + (int)walls.size() + 3 + (int)walls.size() + 1 + 2;
-    restart_global = wall_heat.any() || moving;
+    size_vector = 5 + (int)radiation.walls + 3 + (int)radiation.walls + 1 + 2;
+    restart_global = moving;
+    for (uint32_t k = 0; k < radiation.walls; k++) restart_global |= radiation.words[k]->capacity > 0;
     global_freq = peratom_freq = 1;
     extscalar = extvector = 0;
     maxexchange = columns + 3;
     FixFibrad::grow_arrays(atom->nmax);
     atom->add_callback(Atom::GROW);
-
-    if (fibrad_insitu_new(&insitu, world, &config) != FIBRAD_OK)
-        error->all(FLERR,
-                   std::string("fix fibrad: no memory, or cutoff, tolerance, directions or paths are out of range"));
 }
 
 FixFibrad::~FixFibrad() {
     atom->delete_callback(id, Atom::GROW);
-    fibrad_insitu_free(insitu);
-    mesh_walls_free(&meshes);
+    radiation_free(&radiation);
+}
+
+bool FixFibrad::yes_or_no() {
+    const std::string given = next();
+    if (given != "yes" && given != "no") stop("say yes or no, not `" + given + "`");
+    return given == "yes";
 }
 
 // Takes d_NAME or `temperature`. Other words may name data of LAMMPS that are no vector of numbers.
-void FixFibrad::read_temperature(Words &words) {
-    temperature = words.next();
+void FixFibrad::read_temperature() {
+    temperature = next();
     if (temperature != "temperature" && temperature.compare(0, 2, "d_") != 0)
-        error->all(FLERR, "fix fibrad: `temperature` is followed by d_NAME, not `" + temperature + "`");
+        stop("`temperature` is followed by d_NAME, not `" + temperature + "`");
 }
 
 // Takes the name of a group.
-void FixFibrad::read_group(Words &words) {
-    const std::string name = words.next();
+void FixFibrad::read_group() {
+    const std::string name = next();
     const int number = group->find(name);
-    if (number < 0) error->all(FLERR, "fix fibrad: there is no group `" + name + "`");
+    if (number < 0) stop("there is no group `" + name + "`");
     kept_bit = group->bitmask[number];
 }
 
-static const char *const across[] = {"yz", "xz", "xy"}; // the other axes of a cylinder along x, y or z
-
-// wall FACE T e [at POS] [capacity C] | wall FACE open [at POS] | wall xcylinder R T e [at Y Z] [capacity C] |
-// wall ycylinder R T e [at X Z] ... | wall zcylinder R T e [at X Y] ... | wall mesh ...
-void FixFibrad::read_wall(Words &words) {
-    static const char *const faces[] = {"xlo", "xhi",       "ylo",       "yhi",      "zlo",
-                                        "zhi", "xcylinder", "ycylinder", "zcylinder"};
-    const std::string name = words.next();
-    const int face = (int)(std::find(faces, faces + 9, name) - faces);
-    const bool round = face >= 6;
-    if (face < 6 && words.take("open")) return read_opening(words, face);
-    if (walls.size() == FIBRAD_WALLS_MAX)
-        error->all(FLERR, text("fix fibrad: there are at most %d walls", FIBRAD_WALLS_MAX));
-    if (name == "mesh") return read_mesh(words);
-    if (face == 9)
-        error->all(FLERR,
-                   "fix fibrad: a wall is one of xlo xhi ylo yhi zlo zhi xcylinder ycylinder zcylinder mesh, not `" +
-                       name + "`");
-
-    const double huge = 1e300;
-    fibrad_wall wall = {};
-    if (round) {
-        wall.kind = FIBRAD_WALL_CYLINDER;
-        wall.cylinder.along = face - 6;
-        wall.cylinder.radius = words.number("the cylinder's radius", 0, huge);
-    } else {
-        wall.kind = FIBRAD_WALL_PLANE;
-        wall.plane.axis = face / 2;
-        wall.plane.upper = face % 2;
-    }
-    wall_kelvins.push_back(read_kelvins(words, "a wall's temperature"));
-    wall_emissivity.push_back(words.number("a wall's emissivity", 0, 1));
-    const bool at = words.take("at");
-    if (at) {
-        if (round) {
-            wall.cylinder.x = words.number(text("%c of the cylinder", across[face - 6][0]), -huge, huge);
-            wall.cylinder.y = words.number(text("%c of the cylinder", across[face - 6][1]), -huge, huge);
-        } else {
-            wall.plane.at = words.number("the place of a wall", -huge, huge);
-        }
-    }
-    wall_heat.capacity.push_back(words.take("capacity") ? read_capacity(words, wall_kelvins.back()) : 0);
-    walls.push_back(wall);
-    wall_face.push_back(at || round ? -1 : face);
+// T | v_NAME
+void FixFibrad::read_surroundings() {
+    if (peek().compare(0, 2, "v_") == 0)
+        surroundings = next().substr(2);
+    else
+        radiation.surroundings = number("the temperature of the surroundings", 0, FIBRAD_TEMPERATURE_MAX);
 }
 
-// [at POS]; without `at` the opening is where the particles end
-void FixFibrad::read_opening(Words &words, int face) {
-    const double huge = 1e300;
-    fibrad_plane opening = {face / 2, face % 2, NAN};
-    if (words.take("at")) opening.at = words.number("the place of an open side", -huge, huge);
-    if (words.next_is_number())
-        error->all(FLERR, std::string("fix fibrad: an open side has no temperature: it has that of the surroundings; "
-                                      "its place follows the word `at`"));
-    openings.push_back(opening);
-}
-
-// C, the heat capacity of a wall that begins with the temperature t
-double FixFibrad::read_capacity(Words &words, const Temperature &t) {
-    if (!t.variable.empty())
-        error->all(FLERR, "fix fibrad: a wall with a capacity has a temperature of its own, not v_" + t.variable);
-    return words.number("a wall's capacity", 1e-300, 1e300);
-}
-
-// wall mesh FILE T e [name NAME] [both | normals | auto] [solids] [scale S] [capacity C] [motion]
-void FixFibrad::read_mesh(Words &words) {
-    const std::string path = words.next();
-    const Temperature t = read_kelvins(words, "a wall's temperature");
-    const double e = words.number("a wall's emissivity", 0, 1);
-    const uint32_t first = (uint32_t)walls.size();
-    double capacity = 0;
-    std::string name;
+// A wall, and for meshes words of motion in between.
+void FixFibrad::read_wall() {
+    std::vector<const char *> words;
+    for (const std::string &of_command : word) words.push_back(of_command.c_str());
+    wall_words wall = {};
     mesh_motion motion = {};
-    mesh_file file = {};
-    file.path = path.c_str();
-    file.scale = 1;
-    for (bool more = true; more;) {
-        if (words.take("both"))
-            file.sides = SIDES_BOTH;
-        else if (words.take("normals"))
-            file.sides = SIDES_NORMALS;
-        else if (words.take("auto"))
-            file.sides = SIDES_AUTO;
-        else if (words.take("solids"))
-            file.solids = true;
-        else if (words.take("scale"))
-            file.scale = words.number("the scale of a mesh", 1e-12, 1e12);
-        else if (words.take("name"))
-            name = words.next();
-        else if (words.take("capacity"))
-            capacity = read_capacity(words, t);
-        else
-            more = read_motion(words, &motion);
-    }
-    if (!name.empty()) {
-        file.name = name.c_str();
-        if (!mesh_name(file.name))
-            error->all(FLERR, "fix fibrad: a wall cannot be called `" + name + "`: letters, digits and _, at most 31");
-    }
-    uint32_t count;
-    const int status = mesh_walls_add(&meshes, world, &file, nullptr, first, &count);
-    if (status) error->all(FLERR, std::string("fix fibrad: ") + (meshes.messages[0] ? meshes.messages : path.c_str()));
-    fibrad_wall wall = {};
-    wall.kind = FIBRAD_WALL_MESH;
-    walls.insert(walls.end(), count, wall);
-    wall_kelvins.insert(wall_kelvins.end(), count, t);
-    wall_emissivity.insert(wall_emissivity.end(), count, e);
-    wall_heat.capacity.insert(wall_heat.capacity.end(), count, capacity);
-    wall_face.insert(wall_face.end(), count, -1);
-    motions.push_back(motion);
-    if (comm->me == 0) describe_meshes(first, count, path);
+    do {
+        const int count = wall_words_read(&wall, words.data() + at, (int)(words.size() - at), KEYS, radiation.fault);
+        if (count == 0 && *radiation.fault) stop(std::string("wall ") + radiation.fault);
+        at += count;
+    } while (wall.shape == WALL_MESH && read_motion(&motion));
+    if (wall.shape == WALL_MESH) motions.push_back(motion);
+    need_good(radiation_add_wall(&radiation, &wall));
 }
 
 // rotate AX AY AZ PERIOD [about X Y Z] | velocity VX VY VZ; false: it is another word
-bool FixFibrad::read_motion(Words &words, mesh_motion *motion) {
-    const auto number = [&words](const char *what) { return words.number(what, -1e100, 1e100); };
-    const auto three = [&number](const char *what, double *to) {
-        for (int k = 0; k < 3; k++) to[k] = number(what);
+bool FixFibrad::read_motion(mesh_motion *motion) {
+    const auto three = [this](const char *what, double *to) {
+        for (int k = 0; k < 3; k++) to[k] = number(what, -1e100, 1e100);
     };
-    if (words.take("velocity")) {
+    if (take("velocity")) {
         three("a mesh's velocity", motion->velocity);
-    } else if (words.take("rotate")) {
+    } else if (take("rotate")) {
         double *axis = motion->axis;
         three("a mesh's axis", axis);
         const double length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-        if (length == 0) error->all(FLERR, std::string("fix fibrad: the axis of a mesh must not be 0 0 0"));
+        if (length == 0) stop("the axis of a mesh must not be 0 0 0");
         for (int k = 0; k < 3; k++) axis[k] /= length;
-        motion->turn = number("a mesh's period");
-        if (motion->turn == 0) error->all(FLERR, std::string("fix fibrad: the period of a mesh must not be 0"));
-        if (words.take("about")) three("a point of a mesh's axis", motion->about);
+        motion->turn = number("a mesh's period", -1e100, 1e100);
+        if (motion->turn == 0) stop("the period of a mesh must not be 0");
+        if (take("about")) three("a point of a mesh's axis", motion->about);
     } else {
         return false;
     }
     return moving = true;
 }
 
-// Prints what is said about a file, and the indices of its walls in the output. Only rank 0 has the names of the walls.
-void FixFibrad::describe_meshes(uint32_t first, uint32_t count, const std::string &path) {
-    if (meshes.messages[0]) say(std::string("fix fibrad: ") + meshes.messages);
-    for (uint32_t k = first; k < first + count; k++)
-        say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, meshes.meshes.name[k],
-                 mesh_triangles(mesh_of_wall(&meshes.meshes, k), k)) +
-            path);
-}
-
-// T | v_NAME
-FixFibrad::Temperature FixFibrad::read_kelvins(Words &words, const char *what) {
-    if (words.next_begins("v_")) return {0, words.next().substr(2)};
-    return {words.number(what, 0, FIBRAD_TEMPERATURE_MAX), ""};
+// Keeps variables of temperatures. Prints the indices of walls of triangles in the output.
+void FixFibrad::name_walls() {
+    for (uint32_t k = 0; k < radiation.walls; k++) {
+        const wall_words *wall = radiation.words[k];
+        const bool varies = wall->temperature_text && std::isnan(wall->temperature);
+        variables.push_back(varies ? wall->temperature_text + 2 : "");
+        if (wall->shape == WALL_MESH)
+            say(text("fix fibrad: f_%s[%d] is of wall %s, %u triangles of ", id, 6 + (int)k, radiation.name[k],
+                     mesh_triangles(mesh_of_wall(&radiation.meshes.meshes, k), k)) +
+                wall->mesh.path);
+    }
 }
 
 // An option of rows.
-void FixFibrad::read_setting(Words &words, const radiation_setting &setting) {
-    const std::string name = setting.name, word = words.next();
-    if (!setting_take(setting, word, &config))
-        error->all(FLERR, "fix fibrad: `" + name + "` is " + setting.wanted + ", not `" + word + "`");
-    accuracy |= name == "accuracy";
-    sampling |= name == "tolerance" || name == "directions" || name == "paths";
+void FixFibrad::read_option(const std::string &key) {
+    const char *wanted = radiation_option(&radiation, key.c_str(), peek().c_str());
+    if (wanted && !*wanted)
+        stop("`" + key + (is_number(key) ? "` is a number too many, or its keyword is missing" : "` is no keyword"));
+    if (wanted) stop("`" + key + "` is " + wanted + ", not `" + peek() + "`");
+    at++;
 }
 
 // K [lens | hertz] [scale S] [gas KG]
-void FixFibrad::read_contacts(Words &words) {
-    contact = read_property(words, "the conductivity at contacts", 1e-300, 1e300);
-    while (const contact_setting *setting = contact_named(words.peek())) {
-        words.next();
-        if (setting->number)
-            spots.*setting->number = words.number(setting->what, setting->low, setting->high);
-        else
-            spots.hertz = setting->hertz;
-    }
-    const double metre = !strcmp(update->unit_style, "si") ? 1 : !strcmp(update->unit_style, "cgs") ? 100 : 0;
-    spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * metre;
+void FixFibrad::read_contacts() {
+    contact = read_property("the conductivity at contacts", 1e-300, 1e300);
+    std::vector<const char *> words;
+    for (size_t k = at; k < word.size(); k++) words.push_back(word[k].c_str());
+    const int count = radiation_contact_words(&radiation, words.data(), (int)words.size());
+    need_good(count >= 0);
+    at += count;
+    radiation.conducts = true;
 }
 
 // VALUE | type VALUE VALUE ... | d_NAME
-FixFibrad::Property FixFibrad::read_property(Words &words, const char *what, double low, double high) {
+FixFibrad::Property FixFibrad::read_property(const char *what, double low, double high) {
     Property property;
-    if (words.next_begins("d_")) { // of fix property/atom
-        property.of_atom = words.next();
+    if (peek().compare(0, 2, "d_") == 0) { // of fix property/atom
+        property.of_atom = next();
         return property;
     }
     const size_t types = (size_t)atom->ntypes;
-    const bool by_type = words.take("type");
+    const bool by_type = take("type");
     Table table;
-    property.of_type.assign(types + 1, by_type ? 1 : read_value(words, what, low, high, &table)); // types count from 1
+    property.of_type.assign(types + 1, by_type ? 1 : read_value(what, low, high, &table)); // types count from 1
     property.table.assign(types + 1, table);
     for (size_t type = 1; by_type && type <= types; type++)
         property.of_type[type] =
-            read_value(words, text("%s of type %zu of %zu", what, type, types), low, high, &property.table[type]);
-    if (words.next_is_number())
-        error->all(FLERR,
-                   text("fix fibrad: there are too many values of %s: ", what) +
-                       (by_type ? text("atoms have %zu types", types) : "values of types follow the word `type`"));
+            read_value(text("%s of type %zu of %zu", what, type, types), low, high, &property.table[type]);
+    if (is_number(peek()))
+        stop(text("there are too many values of %s: ", what) +
+             (by_type ? text("atoms have %zu types", types) : "values of types follow the word `type`"));
     const auto given = [](const Table &t) { return t.given(); };
     if (std::none_of(property.table.begin(), property.table.end(), given)) property.table.clear();
     return property;
 }
 
-// number | table FILE; returns the number, or the first value of the table
-double FixFibrad::read_value(Words &words, const std::string &what, double low, double high, Table *table) {
-    if (!words.take("table")) return words.number(what, low, high);
-    *table = read_table(words.next(), what.c_str(), low, high);
+// number | @FILE; returns the number, or the first value of the table
+double FixFibrad::read_value(const std::string &what, double low, double high, Table *table) {
+    if (peek().compare(0, 1, "@") != 0) return number(what, low, high);
+    *table = read_table(next().substr(1), what.c_str(), low, high);
     return table->value[0];
 }
 
@@ -435,7 +318,7 @@ FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what
     table.kelvin.assign(read.x, read.x + read.n);
     table.value.assign(read.y, read.y + read.n);
     curve_free(&read);
-    if (size[0]) error->all(FLERR, "fix fibrad: " + message);
+    if (size[0]) stop(message);
     table.kelvin.resize(size[1]);
     table.value.resize(size[1]);
     MPI_Bcast(table.kelvin.data(), size[1], MPI_DOUBLE, 0, world);
@@ -448,32 +331,12 @@ FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what
 int FixFibrad::setmask() { return FixConst::POST_FORCE | FixConst::END_OF_STEP | FixConst::POST_RUN; }
 
 void FixFibrad::init() {
-    if (!atom->radius) error->all(FLERR, std::string("fix fibrad: particles need radii (atom_style sphere)"));
-    if (!atom->tag_enable) error->all(FLERR, std::string("fix fibrad: atoms need ids"));
-    if (domain->dimension != 3) error->all(FLERR, std::string("fix fibrad: the dimension must be 3"));
-    if (domain->triclinic) error->all(FLERR, std::string("fix fibrad: the box must not be triclinic"));
-    if (strstr(update->integrate_style, "respa"))
-        error->all(FLERR, std::string("fix fibrad: run_style must be verlet"));
-    for (const fibrad_wall &wall : walls) {
-        const int along = wall.cylinder.along;
-        if (wall.kind == FIBRAD_WALL_CYLINDER &&
-            (domain->periodicity[(along + 1) % 3] || domain->periodicity[(along + 2) % 3]))
-            error->all(FLERR, text("fix fibrad: wall %ccylinder needs open axes %c and %c: what is in it has no images "
-                                   "beyond it",
-                                   "xyz"[along], across[along][0], across[along][1]));
-    }
-    for (const fibrad_plane &opening : openings)
-        if (domain->periodicity[opening.axis])
-            error->all(FLERR, std::string("fix fibrad: wall ") + "xyz"[opening.axis] + (opening.upper ? "hi" : "lo") +
-                                  " open is on a periodic axis");
-    for (int face : wall_face) {
-        if (face < 0) continue;
-        const std::string name = {"xyz"[face / 2], face % 2 ? 'h' : 'l', face % 2 ? 'i' : 'o'};
-        if (domain->periodicity[face / 2]) error->all(FLERR, "fix fibrad: wall " + name + " is on a periodic axis");
-        if (domain->boundary[face / 2][face % 2] != 1) // fixed
-            error->all(FLERR,
-                       "fix fibrad: wall " + name + " is on a face that moves with the particles: say where (at POS)");
-    }
+    if (!atom->radius) stop("particles need radii (atom_style sphere)");
+    if (!atom->tag_enable) stop("atoms need ids");
+    if (domain->dimension != 3) stop("the dimension must be 3");
+    if (domain->triclinic) stop("the box must not be triclinic");
+    if (strstr(update->integrate_style, "respa")) stop("run_style must be verlet");
+    place_walls();
     if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
     if (!solid.of_atom.empty()) need(solid.of_atom);
     if (!contact.of_atom.empty()) need(contact.of_atom);
@@ -483,14 +346,13 @@ void FixFibrad::init() {
     if (temperature.empty()) temperature = known("temperature") && known("heatflow") ? "temperature" : "d_T";
     need(temperature);
     if (temperature != "temperature") {
-        if (!cp.given()) error->all(FLERR, std::string("fix fibrad: `cp C`, heat per mass and kelvin, is missing"));
+        if (!cp.given()) stop("`cp C`, heat per mass and kelvin, is missing");
         if (!cp.of_atom.empty()) need(cp.of_atom);
         return;
     }
     bool stepped = false;
     for (int i = 0; i < modify->nfix; i++) stepped = stepped || !strcmp(modify->fix[i]->style, "heat/flow");
-    if (!stepped)
-        error->all(FLERR, std::string("fix fibrad: nothing steps the temperatures: fix ID all heat/flow constant CP"));
+    if (!stepped) stop("nothing steps the temperatures: fix ID all heat/flow constant CP");
     if (!cp.given()) say("fix fibrad: without `cp` the time step is not checked");
 }
 
@@ -505,60 +367,54 @@ void FixFibrad::setup(int) {
     if (restarted) lost -= clock_of(update), restarted = false; // LAMMPS sets its clock when a run begins
     if (set_up < 0) list_output();
     set_up = update->ntimestep;
-    fibrad_insitu_facts_get(insitu, &before);
+    before = facts();
+    radiation.rows_made = radiation.rows_followed = radiation.powers_found = 0;
     refuse_second();
     make_rows();
     if (heat_every) find_powers();
 
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    double bytes = (double)facts.bytes;
+    const fibrad_insitu_facts now = facts();
+    double bytes = (double)now.bytes;
     MPI_Allreduce(MPI_IN_PLACE, &bytes, 1, MPI_DOUBLE, MPI_MAX, world);
     say(text("fix fibrad: %.0f particles, %s, %.0f entries, at most %.1f MB a rank, rows in %.2g s",
-             (double)facts.particles, facts.cutoff > 0 ? text("cutoff %g", facts.cutoff).c_str() : "no cutoff",
-             (double)facts.entries, bytes / 1e6, facts.seconds_rows - before.seconds_rows));
+             (double)now.particles, now.cutoff > 0 ? text("cutoff %g", now.cutoff).c_str() : "no cutoff",
+             (double)now.entries, bytes / 1e6, now.seconds_rows - before.seconds_rows));
+}
+
+fibrad_insitu_facts FixFibrad::facts() const {
+    fibrad_insitu_facts now;
+    fibrad_insitu_facts_get(radiation.insitu, &now);
+    return now;
 }
 
 // Says what the elements of the global vector are, and what atoms have.
 void FixFibrad::list_output() {
-    static const char *const faces[] = {"xlo", "xhi", "ylo", "yhi", "zlo", "zhi"};
-    const int count = (int)walls.size();
-    std::string names, list = "[1] surroundings", atoms = ": [1] power";
-    for (const fibrad_plane &opening : openings)
-        list += std::string(" by opening ") + faces[2 * opening.axis + opening.upper];
+    const int walls = (int)radiation.walls;
+    std::string names, list = ": [1] surroundings";
+    for (uint32_t k = 0; k < radiation.openings; k++)
+        list +=
+            std::string(" by opening ") + wall_plane_names[2 * radiation.opening[k].axis + radiation.opening[k].upper];
     list += ", [2] beyond, [3] error, [4] [5] seconds";
-    for (int w = 0; w < count; w++) {
-        const fibrad_wall &wall = walls[w];
-        const std::string name = wall.kind == FIBRAD_WALL_PLANE ? faces[2 * wall.plane.axis + wall.plane.upper]
-                                 : wall.kind == FIBRAD_WALL_CYLINDER
-                                     ? std::string(1, "xyz"[wall.cylinder.along]) + "cylinder"
-                                     : "mesh";
-        list += text(", [%d] wall ", 6 + w) + name;
-        names += text(", [%d] T of wall ", 9 + count + w) + name;
+    for (int w = 0; w < walls; w++) {
+        list += text(", [%d] wall %s", 6 + w, radiation.name[w]);
+        names += text(", [%d] T of wall %s", 9 + walls + w, radiation.name[w]);
     }
-    list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + count, 7 + count, 8 + count) + names;
-    list += text(", [%d] gone", 9 + 2 * count);
-    if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * count, 11 + 2 * count);
+    list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + walls, 7 + walls, 8 + walls) + names;
+    list += text(", [%d] gone", 9 + 2 * walls);
+    if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * walls, 11 + 2 * walls);
     say(text("fix fibrad: f_%s", id) + list);
-    if (parts) atoms += ", [2] from particles, [3] from walls, [4] from surroundings";
-    if (parts && contact.given()) atoms += ", [5] through contacts";
-    if (errors) atoms += text(", [%d] beyond, [%d] error", columns - 1, columns);
-    if (columns > 1) say(text("fix fibrad: f_%s of atoms", id) + atoms);
+    if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error", id));
 }
 
 void FixFibrad::post_run() {
     follow_heatflow();
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    const double rows = facts.seconds_rows - before.seconds_rows, powers = facts.seconds_powers - before.seconds_powers;
+    const fibrad_insitu_facts now = facts();
+    const double rows = now.seconds_rows - before.seconds_rows, powers = now.seconds_powers - before.seconds_powers;
     say(text(
         "fix fibrad: rows made %d times, and of new particles alone %d times, in %.3g s; powers %d times, in %.3g s; "
         "%.0f %% of the run",
-        rows_made, rows_followed, rows, powers_found, powers,
+        radiation.rows_made, radiation.rows_followed, rows, radiation.powers_found, powers,
         100 * (rows + powers) / std::max(MPI_Wtime() - begun, 1e-9)));
-    begun = MPI_Wtime();
-    before = facts;
-    rows_made = rows_followed = powers_found = 0;
 }
 
 void FixFibrad::say(const std::string &sentence) {
@@ -580,17 +436,17 @@ void FixFibrad::post_force(int) {
 // powers are there by then, and no time passes.
 void FixFibrad::end_of_step() {
     if (update->ntimestep == set_up) {
-        if (moving) error->all(FLERR, std::string("fix fibrad: no time passes in a rerun, so meshes cannot move"));
+        if (moving) stop("no time passes in a rerun, so meshes cannot move");
         return;
     }
     if (update->ntimestep % rows_every == 0) make_rows();
     if (!heat_every) return;
     follow_heatflow();
     select();
-    if (have_moved()) make_rows(MOVED);
+    if (have_moved()) make_rows(true);
     find_powers();
     if (temperature == "temperature") return;
-    heat_walls(heat_every);
+    radiation_heat_walls(&radiation, update->dt * heat_every);
     double *t = vector(temperature);
     const std::vector<double> capacity = values(cp);
     for (size_t k = 0; k < member.size(); k++) {
@@ -616,11 +472,15 @@ void FixFibrad::select() {
 // The time that meshes go by.
 double FixFibrad::time() const { return restarted ? lost : lost + clock_of(update); }
 
-// Puts meshes where they are now, and finds which sides of them are walls.
-void FixFibrad::place_meshes(const fibrad_insitu_bed &bed) {
-    if ((moving && mesh_walls_move(&meshes, world, &bed, motions.data(), time())) ||
-        mesh_walls_face(&meshes, world, &bed))
-        error->all(FLERR, std::string("fix fibrad: out of memory"));
+// Puts meshes where they are now.
+void FixFibrad::place_meshes() {
+    double period[3];
+    for (int axis = 0; axis < 3; axis++) period[axis] = domain->periodicity[axis] ? domain->prd[axis] : 0;
+    if (moving && mesh_walls_move(&radiation.meshes, period, motions.data(), time())) stop("out of memory");
+}
+
+void FixFibrad::place_walls() {
+    need_good(radiation_place(&radiation, domain->boxlo, domain->boxhi, domain->periodicity, domain->boundary));
 }
 
 // The members and walls at present.
@@ -631,18 +491,8 @@ FixFibrad::Bed FixFibrad::present_bed() {
         b.radius.push_back(atom->radius[i]);
     }
     b.emissivity = values(emissivity), b.conductivity = conductivities();
-    for (size_t w = 0; w < walls.size(); w++)
-        if (wall_face[w] >= 0) walls[w].plane.at = (wall_face[w] % 2 ? domain->boxhi : domain->boxlo)[wall_face[w] / 2];
-
-    std::copy_n(domain->boxlo, 3, b.bed.low);
-    std::copy_n(domain->boxhi, 3, b.bed.high);
-    std::copy_n(domain->periodicity, 3, b.bed.periodic);
-    b.bed.wall = walls.data();
-    b.bed.wall_emissivity = wall_emissivity.data();
-    b.bed.walls = (uint32_t)walls.size();
-    b.bed.opening = openings.data();
-    b.bed.openings = (uint32_t)openings.size();
-    b.bed.triangles = &meshes.meshes.triangles;
+    place_walls();
+    b.bed = radiation_bed(&radiation, domain->boxlo, domain->boxhi, domain->periodicity);
     b.bed.n = member.size();
     b.bed.id = tags.data();
     b.bed.x = b.x.data();
@@ -671,38 +521,21 @@ bool FixFibrad::have_moved() {
     return 10 * count[0] > count[1];
 }
 
-// Makes the rows of all particles, or only those of particles that have come since the last rows.
-void FixFibrad::make_rows(int which) {
-    const bool follow = which == NEW;
-    select();
-    for (size_t k = 0; k < member.size() && !follow; k++) std::copy_n(atom->x[member[k]], 3, &rows_x[3 * member[k]]);
-    const Bed present = present_bed();
-    const bigint number = which == MOVED ? update->ntimestep : update->ntimestep / rows_every * rows_every;
-    place_meshes(present.bed);
-    const int status = (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(insitu, &present.bed, (uint64_t)number);
-    if (status == FIBRAD_E_BACK)
-        error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) +
-                              "; with the word `both` both sides of a mesh are the wall");
-    if (status == FIBRAD_E_ENDLESS)
-        error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu) + ", `wall zhi open`");
-    check(status);
-    (follow ? rows_followed : rows_made)++;
-    tell_strays();
-    if (!rows_file.empty() && !follow)
-        check(fibrad_insitu_write(insitu, (rows_file + "." + std::to_string(update->ntimestep)).c_str()));
+// The number that seeds rows: the present step if they are made since particles have moved, else the last multiple of
+// NROWS.
+uint64_t FixFibrad::number_of_rows(bool by_motion) const {
+    return (uint64_t)(by_motion ? update->ntimestep : update->ntimestep / rows_every * rows_every);
 }
 
-void FixFibrad::tell_strays() {
-    const char *beyond =
-        config.cutoff > 0 ? "take a larger `cutoff`, or none" : "with a larger `gather` there is no cutoff";
-    for (int kind = 0; kind < FIBRAD_REMARKS; kind++) {
-        const char *remark = fibrad_insitu_remark(insitu, kind);
-        if (*remark && !told[kind] && comm->me == 0)
-            error->warning(FLERR,
-                           text("fix fibrad: %s, at step %s; %s", remark, std::to_string(update->ntimestep).c_str(),
-                                kind == FIBRAD_REMARK_BEYOND ? beyond : "`strict yes` would end the run"));
-        told[kind] = told[kind] || *remark;
-    }
+// Makes the rows of all particles.
+void FixFibrad::make_rows(bool by_motion) {
+    select();
+    for (int i : member) std::copy_n(atom->x[i], 3, &rows_x[3 * i]);
+    const Bed present = present_bed();
+    need_good(radiation_rows(&radiation, &present.bed, number_of_rows(by_motion), false));
+    if (rows_file.empty()) return;
+    const std::string name = rows_file + "." + std::to_string(update->ntimestep);
+    if (fibrad_insitu_write(radiation.insitu, name.c_str())) stop(fibrad_insitu_message(radiation.insitu));
 }
 
 // If two fixes had a particle in common, it would exchange heat twice. Such fixes are an error. Also prints the number
@@ -721,8 +554,8 @@ void FixFibrad::refuse_second() {
             if (takes_part(i) && other->takes_part(i)) shared = std::max(shared, atom->tag[i]);
         MPI_Allreduce(MPI_IN_PLACE, &shared, 1, MPI_LMP_TAGINT, MPI_MAX, world);
         if (shared)
-            error->all(FLERR, std::string("fix fibrad: the fixes ") + id + " and " + other->id +
-                                  " both radiate from atom " + std::to_string(shared));
+            stop(std::string("the fixes ") + id + " and " + other->id + " both radiate from atom " +
+                 std::to_string(shared));
     }
 }
 
@@ -747,108 +580,60 @@ void FixFibrad::refuse_conduction() {
     int heat = comm->me == 0 && pair && has_heat(pair);
     MPI_Bcast(&heat, 1, MPI_INT, 0, world);
     if (heat) name = "the heat model of pair granular";
-    if (!name.empty())
-        error->all(FLERR, "fix fibrad: " + name + " conducts through contacts already: leave out `contacts`");
+    if (!name.empty()) stop(name + " conducts through contacts already: leave out `contacts`");
 }
 
-// Evaluates the variables. A variable may use computes, which are then needed at steps of heat.
+// Evaluates a variable.
+double FixFibrad::kelvins(const std::string &variable) {
+    const int k = input->variable->find(variable.c_str());
+    if (k < 0) stop("there is no equal-style variable `" + variable + "`");
+    if (!input->variable->equalstyle(k))
+        stop("the variable `" + variable + "` is not of equal style; a wall or the surroundings have one temperature");
+    const double value = input->variable->compute_equal(k);
+    if (!(value >= 0 && value < HUGE_VAL)) stop(text("the temperature v_%s is %g", variable.c_str(), value));
+    return value;
+}
+
+// Evaluates all variables. They may use computes, which are then needed at steps of heat.
 void FixFibrad::find_temperatures() {
-    const auto kelvins = [this](const Temperature &t) {
-        if (t.variable.empty()) return t.value;
-        const int k = input->variable->find(t.variable.c_str());
-        if (k < 0 || !input->variable->equalstyle(k))
-            error->all(FLERR, "fix fibrad: " + (k < 0 ? "there is no equal-style variable `" + t.variable + "`"
-                                                      : "the variable `" + t.variable +
-                                                            "` is not of equal style; a wall or the surroundings have "
-                                                            "one temperature"));
-        const double value = input->variable->compute_equal(k);
-        if (!(value >= 0 && value < HUGE_VAL))
-            error->all(FLERR, text("fix fibrad: the temperature v_%s is %g", t.variable.c_str(), value));
-        return value;
-    };
     modify->clearstep_compute();
-    surroundings.value = kelvins(surroundings);
-    for (Temperature &t : wall_kelvins) t.value = kelvins(t);
+    if (!surroundings.empty()) radiation.surroundings = kelvins(surroundings);
+    for (uint32_t k = 0; k < radiation.walls; k++)
+        if (!variables[k].empty()) radiation.temperature[k] = kelvins(variables[k]);
     modify->addstep_compute(update->ntimestep + heat_every);
 }
 
 void FixFibrad::find_powers() {
     find_temperatures();
     select();
-    const std::vector<double> t = temperatures(), of_walls = wall_temperatures();
-    std::vector<double> power(member.size()), by_contacts(member.size()), conductance(member.size());
+    const std::vector<double> t = temperatures(), k = values(contact);
+    std::vector<double> power(member.size()), conductance(member.size()), capacity = values(cp);
     check_values(t);
-
-    fibrad_insitu_state state = {};
-    state.sigma = sigma;
-    state.surroundings = surroundings.value;
-    state.wall_temperature = of_walls.data();
-    state.n = member.size();
-    state.id = tags.data();
-    state.temperature = t.data();
-    int status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
-    if (status == FIBRAD_E_STATE) { // particles have come or gone since the rows were made
-        make_rows(NEW);
-        status = fibrad_insitu_powers(insitu, &state, power.data(), &totals);
-    }
-    check(status);
-    tell_strays();
-    if (contact.given()) conduct(state, by_contacts.data(), conductance.data());
-    check_step(t, conductance);
-    check_walls();
-    powers_found++;
+    const Bed present = present_bed();
+    need_good(radiation_powers(&radiation, &present.bed, t.data(), number_of_rows(false), k.data(), power.data(),
+                               conductance.data()));
+    capacity.resize(member.size(), HUGE_VAL);
+    for (size_t m = 0; m < member.size(); m++)
+        capacity[m] = atom->mask[member[m]] & groupbit ? capacity[m] * mass(member[m]) : HUGE_VAL;
+    need_good(radiation_stable(&radiation, &present.bed, t.data(), capacity.data(), conductance.data(),
+                               update->dt * heat_every, heat_every));
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
-    for (size_t k = 0; k < member.size(); k++) q[member[k] * columns] = power[k] + by_contacts[k];
-    if (parts) find_parts(by_contacts.data());
+    for (size_t m = 0; m < member.size(); m++) q[member[m] * columns] = power[m];
     if (errors) find_errors();
-}
-
-// Finds what members gain through contacts, and adds it to the totals.
-void FixFibrad::conduct(const fibrad_insitu_state &state, double *power, double *conductance) {
-    const std::vector<double> k = values(contact);
-    spots.conductivity = k.data();
-    const Bed present = present_bed();
-    check(fibrad_insitu_conduct(insitu, &spots, &present.bed, &state, power, conductance, &conducted));
-    totals.particles += conducted.particles;
-    for (size_t w = 0; w < walls.size(); w++) totals.wall[w] += conducted.wall[w];
-}
-
-// Divides each power into what comes by radiation from particles, from walls and from surroundings, and by contacts.
-void FixFibrad::find_parts(const double *by_contacts) {
-    std::vector<double> part(2 * member.size());
-    check(fibrad_insitu_parts(insitu, (double(*)[2])part.data()));
-    for (size_t k = 0; k < member.size(); k++) {
-        double *of_atom = &q[member[k] * columns];
-        of_atom[2] = part[2 * k], of_atom[3] = part[2 * k + 1];
-        of_atom[1] = of_atom[0] - of_atom[2] - of_atom[3] - by_contacts[k];
-        if (contact.given()) of_atom[4] = by_contacts[k];
-    }
 }
 
 void FixFibrad::find_errors() {
     std::vector<double> of_rows(2 * member.size());
-    check(fibrad_insitu_errors(insitu, (double(*)[2])of_rows.data()));
-    for (size_t k = 0; k < member.size(); k++) std::copy_n(&of_rows[2 * k], 2, lines[member[k]] + columns - 2);
-}
-
-std::vector<double> FixFibrad::wall_temperatures() const {
-    std::vector<double> t;
-    for (const Temperature &of_wall : wall_kelvins) t.push_back(of_wall.value);
-    return t;
-}
-
-// Gives walls the heat that the present powers bring in some steps of the simulation.
-void FixFibrad::heat_walls(bigint steps) {
-    std::vector<double> t = wall_temperatures();
-    wall_heat.step(totals.wall, update->dt * (double)steps, &t);
-    for (size_t k = 0; k < t.size(); k++) wall_kelvins[k].value = t[k];
+    if (fibrad_insitu_errors(radiation.insitu, (double(*)[2])of_rows.data()))
+        stop(fibrad_insitu_message(radiation.insitu));
+    for (size_t k = 0; k < member.size(); k++) std::copy_n(&of_rows[2 * k], 2, lines[member[k]] + 1);
 }
 
 // Heats walls as fix heat/flow heats particles: by the present powers, in all steps since the last call.
 void FixFibrad::follow_heatflow() {
     if (temperature != "temperature") return;
-    heat_walls(update->ntimestep - powers_at);
+    radiation_heat_walls(&radiation, update->dt * (double)(update->ntimestep - powers_at));
     powers_at = update->ntimestep;
 }
 
@@ -868,7 +653,7 @@ std::vector<double> FixFibrad::conductivities() {
     std::vector<double> relative = values(solid);
     const std::vector<double> t = temperatures();
     for (size_t k = 0; k < relative.size(); k++)
-        relative[k] = fibrad_relative_conductivity(relative[k], atom->radius[member[k]], t[k], sigma);
+        relative[k] = fibrad_relative_conductivity(relative[k], atom->radius[member[k]], t[k], radiation.sigma);
     return relative;
 }
 
@@ -891,61 +676,11 @@ void FixFibrad::check_values(const std::vector<double> &t) {
     MPI_Bcast(at_fault, 3, MPI_DOUBLE, last.rank, world);
     const std::string of = text(" of atom %.0f is ", last.id);
     if (at_fault[1] == 0)
-        error->all(FLERR, "fix fibrad: the temperature " + temperature + of + "0, so it was not set: `set group all " +
-                              temperature + " T`, or `initial T` of the fix");
+        stop("the temperature " + temperature + of + "0, so it was not set: `set group all " + temperature +
+             " T`, or `initial T` of the fix");
     if (!(at_fault[1] > 0 && at_fault[1] < HUGE_VAL))
-        error->all(FLERR, "fix fibrad: the temperature " + temperature + of + text("%g, not above 0", at_fault[1]));
-    error->all(FLERR, "fix fibrad: cp" + of + text("%g, not above 0", at_fault[2]));
-}
-
-// Checks that steps of temperatures are stable: (4 sigma T^3 A e + 2 H) dt < m cp, H the sum over contacts. Then no
-// particle overshoots its surroundings, and no difference of temperatures changes its sign.
-void FixFibrad::check_step(const std::vector<double> &t, const std::vector<double> &conductance) {
-    const std::vector<double> e = values(emissivity), capacity = values(cp);
-    struct {
-        double ratio;
-        int rank;
-    } worst = {0, comm->me};
-    tagint tag = 0;
-    for (size_t k = 0; k < member.size() && cp.given(); k++) {
-        const int i = member[k];
-        const double area = 16 * std::atan(1) * atom->radius[i] * atom->radius[i];
-        const double per_kelvin = 4 * sigma * t[k] * t[k] * t[k] * area * e[k] + 2 * conductance[k];
-        const double ratio = per_kelvin * update->dt * heat_every / (mass(i) * capacity[k]);
-        if (atom->mask[i] & groupbit && ratio > worst.ratio) worst.ratio = ratio, tag = atom->tag[i];
-    }
-    MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, world);
-    if (worst.ratio < 0.5 || (worst.ratio < 1 && warned)) return;
-    MPI_Bcast(&tag, 1, MPI_LMP_TAGINT, worst.rank, world);
-    judge_step("atom " + std::to_string(tag), worst.ratio, warned);
-}
-
-// Ends the run if steps of heat are longer than the longest stable step. Warns once if they are longer than its half.
-void FixFibrad::judge_step(const std::string &name, double ratio, bool &already_warned) {
-    if (ratio < 0.5 || (ratio < 1 && already_warned)) return;
-    const int most = (int)(heat_every / ratio * (1 - 1e-9));
-    if (ratio >= 1)
-        error->all(FLERR, "fix fibrad: steps of heat are too long for " + name +
-                              (most ? ": NEVERY must be at most " + std::to_string(most)
-                                    : text(": the time step must be at most %.3g", update->dt * heat_every / ratio)));
-    already_warned = true;
-    if (comm->me == 0)
-        error->warning(FLERR, "fix fibrad: steps of heat are long for " + name +
-                                  text(": %.2g times the longest stable step", ratio));
-}
-
-// Checks that steps of heat are stable for walls that store heat.
-void FixFibrad::check_walls() {
-    size_t wall = 0;
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    const double ratio =
-        wall_heat.ratio(facts.wall, conducted.conductance, sigma, wall_temperatures(), update->dt * heat_every, &wall);
-    judge_step(text("wall %d", (int)wall + 1), ratio, wall_warned);
-}
-
-void FixFibrad::check(int status) {
-    if (status != FIBRAD_OK) error->all(FLERR, std::string("fix fibrad: ") + fibrad_insitu_message(insitu));
+        stop("the temperature " + temperature + of + text("%g, not above 0", at_fault[1]));
+    stop("cp" + of + text("%g, not above 0", at_fault[2]));
 }
 
 // ---- values of atoms ------------------------------------------------------------------------------------------------
@@ -964,8 +699,7 @@ bool FixFibrad::known(const std::string &name) {
 void FixFibrad::need(const std::string &name) {
     int there = vector(name) || !atom->nlocal;
     MPI_Allreduce(MPI_IN_PLACE, &there, 1, MPI_INT, MPI_MIN, world);
-    if (!there)
-        error->all(FLERR, "fix fibrad: atoms have no " + name + ": say fix ID all property/atom " + name + " before");
+    if (!there) stop("atoms have no " + name + ": say fix ID all property/atom " + name + " before");
 }
 
 // Values of the members.
@@ -987,27 +721,23 @@ double FixFibrad::mass(int i) const { return atom->rmass ? atom->rmass[i] : atom
 
 // ---- output, and powers that move with their atoms ------------------------------------------------------------------
 
-double FixFibrad::compute_scalar() { return totals.particles; }
+double FixFibrad::compute_scalar() { return radiation.totals.particles + radiation.conducted.particles; }
 
 double FixFibrad::compute_vector(int n) {
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    const double first[] = {totals.surroundings, facts.beyond, facts.error, facts.seconds_rows, facts.seconds_powers};
-    const double strays[] = {(double)facts.outside, (double)facts.overlapping, (double)facts.behind};
-    const double rest[] = {(double)facts.gone, conducted.particles, conducted.contacts};
-    const int last = 5 + (int)walls.size();
+    const fibrad_insitu_facts now = facts();
+    const fibrad_insitu_conducted &conducted = radiation.conducted;
+    const double first[] = {radiation.totals.surroundings, now.beyond, now.error, now.seconds_rows, now.seconds_powers};
+    const double strays[] = {(double)now.outside, (double)now.overlapping, (double)now.behind};
+    const double rest[] = {(double)now.gone, conducted.particles, conducted.contacts};
+    const int last = 5 + (int)radiation.walls;
     return n < 5                 ? first[n]
-           : n < last            ? totals.wall[n - 5]
+           : n < last            ? radiation.totals.wall[n - 5] + conducted.wall[n - 5]
            : n < last + 3        ? strays[n - last]
-           : n < size_vector - 3 ? wall_kelvins[n - last - 3].value
+           : n < size_vector - 3 ? radiation.temperature[n - last - 3]
                                  : rest[n - size_vector + 3];
 }
 
-double FixFibrad::memory_usage() {
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(insitu, &facts);
-    return (double)facts.bytes + (double)(q.capacity() * sizeof(double));
-}
+double FixFibrad::memory_usage() { return (double)facts().bytes + (double)(q.capacity() * sizeof(double)); }
 
 void FixFibrad::grow_arrays(int nmax) {
     q.resize(nmax * columns);
@@ -1047,8 +777,8 @@ int FixFibrad::unpack_exchange(int i, double *buffer) {
 
 void FixFibrad::write_restart(FILE *file) {
     if (comm->me) return;
-    std::vector<double> kept = wall_temperatures();
-    kept.insert(kept.begin(), (double)walls.size());
+    std::vector<double> kept(radiation.temperature, radiation.temperature + radiation.walls);
+    kept.insert(kept.begin(), (double)radiation.walls);
     kept.push_back(time());
     const int bytes = (int)(kept.size() * sizeof(double));
     fwrite(&bytes, sizeof bytes, 1, file);
@@ -1058,12 +788,12 @@ void FixFibrad::write_restart(FILE *file) {
 void FixFibrad::restart(char *buffer) {
     double there;
     memcpy(&there, buffer, sizeof there);
-    if (there != (double)walls.size())
-        error->all(FLERR, text("fix fibrad: there are %d walls, but %g in the restart file", (int)walls.size(), there));
-    std::vector<double> kept(walls.size() + 1);
+    if (there != (double)radiation.walls)
+        stop(text("there are %u walls, but %g in the restart file", radiation.walls, there));
+    std::vector<double> kept(radiation.walls + 1);
     memcpy(kept.data(), buffer + sizeof there, kept.size() * sizeof(double));
-    for (size_t k = 0; k < walls.size(); k++)
-        if (wall_heat.capacity[k] > 0) wall_kelvins[k].value = kept[k];
+    for (uint32_t k = 0; k < radiation.walls; k++)
+        if (radiation.words[k]->capacity > 0) radiation.temperature[k] = kept[k];
     lost = kept.back(), restarted = true;
 }
 

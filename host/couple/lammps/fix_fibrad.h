@@ -14,9 +14,7 @@
 #include "atom.h"
 #include "fix.h"
 
-#include "couple/walls/mesh_walls.h"
-#include "couple/walls/settings.h"
-#include "couple/walls/wall_heat.h"
+#include "couple/simulation/radiation.h"
 
 extern "C" {
 #include "text/read_curve.h"
@@ -65,34 +63,31 @@ class FixFibrad : public Fix {
         bool given() const { return !of_type.empty() || !of_atom.empty(); }
     };
 
-    // A temperature [K]: a number, or an equal-style variable of the script, evaluated at each step of heat.
-    struct Temperature {
-        double value;         // at present
-        std::string variable; // name without v_; empty: none
-    };
-
     // The bed at present, with the arrays to which it points.
     struct Bed {
         std::vector<double> x, radius, emissivity, conductivity;
         fibrad_insitu_bed bed;
     };
 
-    // Reading the arguments of the fix.
-    class Words;
-    void read_wall(Words &);
-    void read_opening(Words &, int face);
-    double read_capacity(Words &, const Temperature &);
-    void read_mesh(Words &);
-    bool read_motion(Words &, mesh_motion *);
-    void describe_meshes(uint32_t first, uint32_t count, const std::string &path);
-    void read_temperature(Words &);
-    void read_group(Words &);
-    Property read_property(Words &, const char *what, double low, double high);
-    double read_value(Words &, const std::string &what, double low, double high, Table *);
+    // Reading the words of the command from `at` on.
+    enum { KEYS = RADIATION_KEYS | WALL_GEOMETRY };
+    bool take(const char *what); // whether the next word is this one; if so, moves behind it
+    std::string peek() const;    // the next word; "": there is none
+    std::string next();
+    double number(const std::string &what, double low, double high);
+    int count(const char *what, int low);
+    bool yes_or_no();
+    void read_wall();
+    bool read_motion(mesh_motion *);
+    void name_walls();
+    void read_surroundings();
+    void read_temperature();
+    void read_group();
+    Property read_property(const char *what, double low, double high);
+    double read_value(const std::string &what, double low, double high, Table *);
     Table read_table(const std::string &path, const char *what, double low, double high);
-    Temperature read_kelvins(Words &, const char *what);
-    void read_contacts(Words &);
-    void read_setting(Words &, const radiation_setting &);
+    void read_contacts();
+    void read_option(const std::string &key);
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
     double *vector(const std::string &name);      // NULL: there is no such vector, or this rank has no atoms
@@ -102,73 +97,56 @@ class FixFibrad : public Fix {
     std::vector<double> temperatures();           // [member]; sets those of 0 K to `initial` first
     std::vector<double> conductivities();         // [member], relative; empty: infinite
     double mass(int i) const;
-    std::vector<double> wall_temperatures() const; // [walls]
 
     // Steps of the simulation.
+    double kelvins(const std::string &variable);
     void find_temperatures(); // of walls and surroundings, from variables
     bool takes_part(int i) const { return atom->mask[i] & (groupbit | kept_bit); }
     void select(); // finds member and tags
     double time() const;
+    void place_meshes();
+    void place_walls();
     Bed present_bed();
-    void place_meshes(const fibrad_insitu_bed &);
-    enum { ALL, NEW, MOVED }; // which rows are made: all, those of new particles, all since particles have moved
-    void make_rows(int which = ALL);
     bool have_moved();
+    uint64_t number_of_rows(bool by_motion) const;
+    void make_rows(bool by_motion = false);
     void find_powers();
-    void conduct(const fibrad_insitu_state &state, double *power, double *conductance);
-    void find_parts(const double *conducted);
     void find_errors();
-    void heat_walls(bigint steps);
     void follow_heatflow();
     void check_values(const std::vector<double> &temperature); // refuses what is not set
-    void check_step(const std::vector<double> &temperature, const std::vector<double> &conductance);
-    void check_walls();
     void list_output();
-    void judge_step(const std::string &name, double ratio, bool &already_warned);
-    void check(int status);        // stops with the message of an error
+    fibrad_insitu_facts facts() const;
+    [[noreturn]] void stop(const std::string &sentence) const;
+    void need_good(bool) const;    // stops with the message of an error
     void say(const std::string &); // a line in the log
-    void tell_strays();            // says once of each kind what was done with strays
     void refuse_second();          // stops if another fix radiates from a particle of this one
     void refuse_conduction();      // stops if LAMMPS conducts through contacts, too
 
     // Arguments of the fix.
+    std::vector<std::string> word;  // behind the style
+    size_t at;                      // the next word
     int heat_every, rows_every;     // NEVERY and NROWS; heat_every 0: no steps of heat
     Property emissivity, cp, solid; // solid: conductivity of the solid, energy/(time length K); not given: infinite
     Property contact;               // conductivity of the solid at contacts; not given: contacts do not conduct
-    fibrad_insitu_contacts spots;   // the rest of what contacts are
     std::string temperature;        // name of the vector of temperatures
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
-    Temperature surroundings;
-    bool parts, errors; // whether atoms have what powers come from, and errors of their rows
-    int columns;        // values of each atom
-    double moved;       // rows are made anew if particles have moved by so many radii; 0: never
-    bool sampling;      // directions, paths or tolerance are given
-    bool accuracy;      // accuracy is given
-    double sigma;       // in units of the simulation
-    double initial;     // temperature of new atoms
-    fibrad_insitu_config config;
-    std::vector<fibrad_wall> walls;
-    std::vector<fibrad_plane> openings;
-    std::vector<Temperature> wall_kelvins;
-    std::vector<double> wall_emissivity;
-    WallHeat wall_heat;
-    mesh_walls meshes;
-    std::vector<mesh_motion> motions; // [meshes]
-    bool moving;                      // whether a mesh moves
-    std::vector<int> wall_face;       // [walls], 2 axis + upper if the wall moves with a face of the box, else -1
+    bool errors;                    // whether atoms have errors of their rows
+    int columns;                    // values of each atom
+    double moved;                   // rows are made anew if particles have moved by so many radii; 0: never
+    double initial;                 // temperature of new atoms
+    struct radiation radiation;
+    std::string surroundings;           // variable of their temperature; empty: it is a number
+    std::vector<std::string> variables; // [walls] the same of walls
+    std::vector<mesh_motion> motions;   // [meshes]
+    bool moving;                        // whether a mesh moves
 
     // State.
-    fibrad_insitu *insitu;
-    fibrad_insitu_totals totals; // of the last powers, with what contacts conduct
-    fibrad_insitu_conducted conducted;
-    std::vector<double> q;       // [nmax][columns], power of each atom; then what `parts` and `errors` ask for
+    std::vector<double> q;       // [nmax][columns], power of each atom; then its errors
     std::vector<double *> lines; // [nmax], where each atom's values in q begin
     std::vector<double> rows_x;  // [nmax][3], where each atom was when its row was made
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
-    bool warned, wall_warned;    // whether the warnings about steps of particles and of walls were given
-    bool told[FIBRAD_REMARKS];   // whether the warning about strays of each kind was given
     bigint set_up;               // step of the last setup
     bigint powers_at;            // step of the last powers
     double lost;                 // time that LAMMPS' clock does not count, since it began anew after a restart
@@ -177,7 +155,6 @@ class FixFibrad : public Fix {
     // Since the beginning of the run.
     double begun;               // s, time when the run began
     fibrad_insitu_facts before; // facts when the run began
-    int rows_made, rows_followed, powers_found;
 };
 
 } // namespace LAMMPS_NS

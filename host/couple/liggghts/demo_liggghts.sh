@@ -9,7 +9,7 @@ mkdir -p "$out"
 
 { cat $script && echo 'run 10000'; } >"$out/conduction.in"
 run_mpi 2 liggghts -in "$out/conduction.in" -log none >"$out/conduction.txt"
-run_mpi 2 "$BUILD/couple/fibrad_liggghts" -in $script --emissivity 0.8 --surroundings 300 --wall zlo=1200,0.9 \
+run_mpi 2 "$BUILD/couple/fibrad_liggghts" -in $script --emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9 \
     --steps 10000 -- -log none >"$out/radiation.txt"
 
 # lines of four numbers are thermo output: step, mean and highest temperature, mean of the heat conducted from walls

@@ -43,31 +43,22 @@ struct script_triangle {
 
 struct script_mesh {
     LAMMPS_NS::FixMeshSurface *fix;
-    std::vector<script_triangle> triangle; /* on rank 0: all triangles by id, at the last rows */
+    uint32_t wall; /* its index */
 };
 
 struct Driver {
     liggghts_options options;
     LAMMPS *lmp;
-    fibrad_insitu *radiation;
-    double sigma; /* in the script's units */
-    std::vector<fibrad_wall> wall;
-    std::vector<std::string> wall_name;
-    std::vector<script_mesh> mesh; /* the last walls of `wall` */
-    mesh_walls triangles;          /* of all meshes, at the last rows */
-    std::vector<double> wall_temperature, wall_emissivity;
-    WallHeat wall_heat;
+    struct radiation radiation;
+    std::vector<script_mesh> mesh;
     Fix *temperature, *source, *power, *known, *capacity;        /* properties of particles, and of types */
     double came, gone;                                           /* heat of particles that have come or gone, here */
     std::vector<uint64_t> id;                                    /* [own] */
-    std::vector<double> emissivity, gain;                        /* [own] */
-    std::vector<double> conductivity;                            /* [own], k* when rows are made; empty: infinite */
-    std::vector<double> by_contacts, conductance, contact_solid; /* [own], of contacts: power, power/K, conductivity */
-    fibrad_insitu_totals totals;                                 /* of the current powers by radiation */
-    fibrad_insitu_conducted conducted;                           /* of those through contacts */
+    std::vector<double> emissivity, gain, heat_capacity;         /* [own] */
+    std::vector<double> conductivity;                            /* [own], k*; empty: infinite */
+    std::vector<double> conductance, contact_solid;              /* [own], of contacts: power/K, conductivity */
     bool counts;                                                 /* the heat of particles that come is counted */
     bool radiates;                                               /* there are powers */
-    bool told[FIBRAD_REMARKS];                                   /* a message on strays of each kind was given */
     LAMMPS_NS::bigint since;                                     /* first step in which the current powers heat */
     double heat, heat_surroundings, heat_wall[FIBRAD_WALLS_MAX]; /* heat by radiation before that step */
     double through, through_wall[FIBRAD_WALLS_MAX];              /* the same through contacts */
@@ -88,11 +79,8 @@ int rank() {
     std::exit(prints ? status : 0);
 }
 
-void check(const Driver *driver, int status) {
-    if (status == FIBRAD_OK) return;
-    const std::string step = std::to_string(driver->lmp->update->ntimestep);
-    const char *hint = status == FIBRAD_E_ENDLESS ? ", such as --wall zhi=open" : "";
-    stop(WRONG_INPUT, "step " + step + ": " + fibrad_insitu_message(driver->radiation) + hint);
+void check(const Driver *driver, bool good) {
+    if (!good) stop(WRONG_INPUT, driver->radiation.fault);
 }
 
 /* ---- set up ----------------------------------------------------------------------------------------------------- */
@@ -139,18 +127,17 @@ void expand(std::vector<double> *values, int ntypes, const char *what) {
 void check_box(Driver *driver) {
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
     const char *units = driver->lmp->update->unit_style;
-    const bool cgs = std::strcmp(units, "cgs") == 0;
-    if (!cgs && std::strcmp(units, "si") != 0) stop(WRONG_INPUT, std::string("units are si or cgs, not ") + units);
-    driver->sigma = cgs ? 1e3 * FIBRAD_STEFAN_BOLTZMANN : FIBRAD_STEFAN_BOLTZMANN;
+    if (!radiation_units(&driver->radiation, units))
+        stop(WRONG_INPUT, std::string("units are si or cgs, not ") + units);
     const int types = driver->lmp->atom->ntypes;
     expand(&driver->options.emissivity, types, "emissivities");
     expand(&driver->options.solid, types, "conductivities of the solid");
     expand(&driver->options.contact, types, "conductivities at contacts");
-    driver->options.spots.gas_least = FIBRAD_GAS_LEAST_DEFAULT * (cgs ? 100 : 1);
     if (domain->triclinic) stop(WRONG_INPUT, "the box is triclinic");
-    for (const radiant_wall &wall : driver->options.walls)
-        if (!wall.placed && domain->boundary[wall.wall.plane.axis][wall.wall.plane.upper] != 1)
-            stop(WRONG_INPUT, "--wall " + wall.name + ": the box has no fixed end there; say where: T,E,AT");
+    if (driver->radiation.insitu == nullptr)
+        check(driver, radiation_begin(&driver->radiation, MPI_COMM_WORLD, domain->periodicity));
+    check(driver,
+          radiation_place(&driver->radiation, domain->boxlo, domain->boxhi, domain->periodicity, domain->boundary));
     if (driver->lmp->atom->radius_flag == 0 || driver->lmp->atom->rmass_flag == 0)
         stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
 }
@@ -169,67 +156,49 @@ class FirstRun : public LAMMPS_NS::Modify {
     Driver *driver; /* NULL: it was checked */
 };
 
-void place_walls(Driver *driver) {
-    const LAMMPS_NS::Domain *domain = driver->lmp->domain;
-    for (radiant_wall &wall : driver->options.walls) {
-        const int axis = wall.wall.plane.axis;
-        if (!wall.placed) wall.wall.plane.at = (wall.wall.plane.upper ? domain->boxhi : domain->boxlo)[axis];
-        driver->wall.push_back(wall.wall);
-        driver->wall_name.push_back(wall.name);
-        driver->wall_temperature.push_back(wall.temperature);
-        driver->wall_emissivity.push_back(wall.emissivity);
-    }
-}
-
 /* The temperature that the script gives to a mesh. NULL: none. */
 LAMMPS_NS::ScalarContainer<double> *mesh_temperature(LAMMPS_NS::FixMeshSurface *fix) {
     return fix->triMesh()->prop().getGlobalProperty<LAMMPS_NS::ScalarContainer<double>>("Temp");
 }
 
 void find_meshes(Driver *driver) {
-    for (const radiant_mesh &mesh : driver->options.meshes) {
-        const int k = driver->lmp->modify->find_fix(mesh.id.c_str());
+    for (uint32_t wall = 0; wall < driver->radiation.walls; ++wall) {
+        const wall_words *words = driver->radiation.words[wall];
+        if (words->shape != WALL_MESH) continue;
+        const int k = driver->lmp->modify->find_fix(words->mesh.path);
+        const std::string name = std::string("wall mesh:") + words->mesh.path;
         Fix *fix = k < 0 ? nullptr : driver->lmp->modify->fix[k];
         if (fix == nullptr || std::strncmp(fix->style, "mesh/surface", 12) != 0)
-            stop(WRONG_INPUT, "--mesh " + mesh.id + ": the script has no such fix mesh/surface");
-        script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), {}};
-        if (mesh.temperature < 0 && mesh_temperature(found.fix) == nullptr)
-            stop(WRONG_INPUT, "--mesh " + mesh.id + ": the script gives no temperature: say ID=T,E");
-        fibrad_wall wall{};
-        wall.kind = FIBRAD_WALL_MESH;
+            stop(WRONG_INPUT, name + ": the script has no such fix mesh/surface");
+        script_mesh found{static_cast<LAMMPS_NS::FixMeshSurface *>(fix), wall};
+        if (words->temperature_text == nullptr && mesh_temperature(found.fix) == nullptr)
+            stop(WRONG_INPUT, name + ": the script gives no temperature: add temperature=T");
         driver->mesh.push_back(found);
-        driver->wall.push_back(wall);
-        driver->wall_name.push_back(mesh.id);
-        driver->wall_temperature.push_back(mesh.temperature);
-        driver->wall_emissivity.push_back(mesh.emissivity);
-    }
-}
-
-/* Takes --capacity. */
-void find_capacities(Driver *driver) {
-    driver->wall_heat.capacity.resize(driver->wall.size());
-    for (const wall_capacity &given : driver->options.capacities) {
-        const auto at = std::find(driver->wall_name.begin(), driver->wall_name.end(), given.name);
-        driver->wall_heat.capacity[(size_t)(at - driver->wall_name.begin())] = given.capacity;
     }
 }
 
 /* ---- while it runs ---------------------------------------------------------------------------------------------- */
 
-/* Takes ids and emissivities of the particles that this rank owns now. */
+double heat_capacity(const Driver *driver, int i) {
+    const LAMMPS_NS::Atom *atom = driver->lmp->atom;
+    return atom->rmass[i] * driver->capacity->compute_vector(atom->type[i] - 1);
+}
+
+/* Takes what is known of the particles that this rank owns now. */
 void take_particles(Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const size_t n = (size_t)atom->nlocal;
     driver->id.resize(n);
     driver->emissivity.resize(n);
     driver->gain.resize(n);
-    driver->by_contacts.assign(n, 0);
-    driver->conductance.assign(n, 0);
+    driver->conductance.resize(n);
+    driver->heat_capacity.resize(n);
     driver->contact_solid.clear();
     for (size_t i = 0; i < n; ++i) {
         const size_t type = (size_t)atom->type[i] - 1;
         driver->id[i] = (uint64_t)atom->tag[i];
         driver->emissivity[i] = driver->options.emissivity[type];
+        driver->heat_capacity[i] = heat_capacity(driver, (int)i);
         if (!driver->options.contact.empty()) driver->contact_solid.push_back(driver->options.contact[type]);
     }
 }
@@ -242,53 +211,7 @@ void find_conductivities(Driver *driver) {
     for (int i = 0; i < atom->nlocal; ++i)
         driver->conductivity.push_back(
             fibrad_relative_conductivity(driver->options.solid[(size_t)atom->type[i] - 1], atom->radius[i],
-                                         driver->temperature->vector_atom[i], driver->sigma));
-}
-
-double heat_capacity(const Driver *driver, int i) {
-    const LAMMPS_NS::Atom *atom = driver->lmp->atom;
-    return atom->rmass[i] * driver->capacity->compute_vector(atom->type[i] - 1);
-}
-
-/* Explicit steps are stable if a power lasts for less than the time in which it would cool the particle down. Twice the
- * conductance of its contacts counts, so that no difference of temperatures changes its sign. */
-void check_time_step(const Driver *driver) {
-    const LAMMPS_NS::Atom *atom = driver->lmp->atom;
-    const double seconds = driver->lmp->update->dt * (double)driver->options.every;
-    struct {
-        double ratio;
-        int id;
-    } worst = {0, 0}, all;
-    for (int i = 0; i < atom->nlocal; ++i) {
-        const double r = atom->radius[i], t = driver->temperature->vector_atom[i];
-        const double conductance = 16 * M_PI * r * r * driver->emissivity[(size_t)i] * driver->sigma * t * t * t +
-                                   2 * driver->conductance[(size_t)i];
-        const double ratio = conductance * seconds / heat_capacity(driver, i);
-        if (ratio > worst.ratio) worst = {ratio, atom->tag[i]};
-    }
-    MPI_Allreduce(&worst, &all, 1, MPI_DOUBLE_INT, MPI_MAXLOC, MPI_COMM_WORLD);
-    if (!(all.ratio > 1)) return;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "particle %d cools down in %.2g of the time between powers: take a smaller --every or time step",
-                  all.id, 1 / all.ratio);
-    stop(WRONG_INPUT, text);
-}
-
-/* The same for walls that store heat. */
-void check_walls(const Driver *driver) {
-    size_t wall = 0;
-    const double seconds = driver->lmp->update->dt * (double)driver->options.every;
-    fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(driver->radiation, &facts);
-    const double ratio = driver->wall_heat.ratio(facts.wall, driver->conducted.conductance, driver->sigma,
-                                                 driver->wall_temperature, seconds, &wall);
-    if (!(ratio > 1)) return;
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "wall %.60s cools down in %.2g of the time between powers: take a smaller --every or time step",
-                  driver->wall_name[wall].c_str(), 1 / ratio);
-    stop(WRONG_INPUT, text);
+                                         driver->temperature->vector_atom[i], driver->radiation.sigma));
 }
 
 /* Gathers all triangles of a mesh at their present positions on rank 0, in the order of ids. A rank may have some of
@@ -316,14 +239,13 @@ std::vector<script_triangle> gather_mesh(LAMMPS_NS::FixMeshSurface *fix) {
     return all;
 }
 
-bool same_places(const std::vector<script_triangle> &a, const std::vector<script_triangle> &b) {
-    bool same = a.size() == b.size();
-    for (size_t t = 0; t < a.size() && same; ++t) same = std::memcmp(a[t].corner, b[t].corner, sizeof a[t].corner) == 0;
-    return same;
+void say(void *, const char *sentence, bool warning) {
+    if (rank() == 0) std::fprintf(stderr, "fibrad_liggghts: %s%s\n", warning ? "warning: " : "", sentence);
 }
 
 /* Adds the triangles of one mesh as if they came from a file. */
-void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<script_triangle> &triangle, uint32_t wall) {
+void take_mesh(Driver *driver, const script_mesh &mesh) {
+    const std::vector<script_triangle> triangle = gather_mesh(mesh.fix);
     const size_t n = triangle.size();
     std::vector<double> corner(9 * n);
     std::vector<uint64_t> place(n);
@@ -340,66 +262,31 @@ void take_mesh(Driver *driver, const radiant_mesh &mesh, const std::vector<scrip
     stl.solid = solid.data();
     stl.solids = 1;
     stl.name = name;
-    const std::string path = "mesh " + mesh.id;
-    mesh_file file{};
+    mesh_file file = driver->radiation.words[mesh.wall]->mesh;
+    const std::string path = std::string("mesh ") + file.path;
+    file.name = file.path;
     file.path = path.c_str();
-    file.name = mesh.id.c_str();
-    file.sides = mesh.sides;
-    file.scale = 1;
-    const bool first = !driver->radiates;
+    mesh_walls *meshes = &driver->radiation.meshes;
     uint32_t walls;
-    const int status = mesh_walls_add(&driver->triangles, MPI_COMM_WORLD, &file, &stl, wall, &walls);
-    if (status != 0) stop(WRONG_INPUT, driver->triangles.messages);
-    if (first && driver->triangles.messages[0] != 0)
-        std::fprintf(stderr, "fibrad_liggghts: %s\n", driver->triangles.messages);
+    const int status = mesh_walls_add(meshes, MPI_COMM_WORLD, &file, &stl, mesh.wall, &walls);
+    if (status != 0) stop(WRONG_INPUT, meshes->messages);
+    if (!driver->radiates && meshes->messages[0] != 0) say(driver, meshes->messages, false);
 }
 
-/* Takes all meshes anew if a mesh has moved. */
-void follow_meshes(Driver *driver) {
-    int moved = 0;
-    for (script_mesh &mesh : driver->mesh) {
-        std::vector<script_triangle> now = gather_mesh(mesh.fix);
-        if (!same_places(now, mesh.triangle)) moved = 1;
-        mesh.triangle = std::move(now);
-    }
-    MPI_Bcast(&moved, 1, MPI_INT, 0, MPI_COMM_WORLD);
-    if (moved == 0) return;
-    mesh_walls_free(&driver->triangles);
-    const size_t first = driver->wall.size() - driver->mesh.size();
-    for (size_t m = 0; m < driver->mesh.size(); ++m)
-        take_mesh(driver, driver->options.meshes[m], driver->mesh[m].triangle, (uint32_t)(first + m));
-}
-
-/* Says once of each kind of strays what was done with them. */
-void tell_strays(Driver *driver) {
-    const char *beyond = driver->options.config.cutoff > 0 ? "take a larger --cutoff, or none"
-                                                           : "with a larger --gather there is no cutoff";
-    for (int kind = 0; kind < FIBRAD_REMARKS; ++kind) {
-        const char *remark = fibrad_insitu_remark(driver->radiation, kind);
-        if (*remark != 0 && !driver->told[kind] && rank() == 0)
-            std::fprintf(stderr, "fibrad_liggghts: warning: step %s: %s; %s\n",
-                         std::to_string(driver->lmp->update->ntimestep).c_str(), remark,
-                         kind == FIBRAD_REMARK_BEYOND ? beyond : "--strict would end the run");
-        driver->told[kind] = driver->told[kind] || *remark != 0;
-    }
+/* Takes all meshes anew. */
+void place_meshes(void *context) {
+    Driver *driver = static_cast<Driver *>(context);
+    mesh_walls_free(&driver->radiation.meshes);
+    for (const script_mesh &mesh : driver->mesh) take_mesh(driver, mesh);
 }
 
 /* The particles that this rank owns now, and walls. Meshes are where they were at the last rows. */
-fibrad_insitu_bed present_bed(const Driver *driver) {
+fibrad_insitu_bed present_bed(Driver *driver) {
     const LAMMPS_NS::Atom *atom = driver->lmp->atom;
     const LAMMPS_NS::Domain *domain = driver->lmp->domain;
-    fibrad_insitu_bed bed{};
-    for (int axis = 0; axis < 3; ++axis) {
-        bed.low[axis] = domain->boxlo[axis];
-        bed.high[axis] = domain->boxhi[axis];
-        bed.periodic[axis] = domain->periodicity[axis];
-    }
-    bed.wall = driver->wall.data();
-    bed.wall_emissivity = driver->wall_emissivity.data();
-    bed.walls = (uint32_t)driver->wall.size();
-    bed.opening = driver->options.openings.data();
-    bed.openings = (uint32_t)driver->options.openings.size();
-    bed.triangles = &driver->triangles.meshes.triangles;
+    take_particles(driver);
+    find_conductivities(driver);
+    fibrad_insitu_bed bed = radiation_bed(&driver->radiation, domain->boxlo, domain->boxhi, domain->periodicity);
     bed.n = driver->id.size();
     bed.id = driver->id.data();
     bed.x = bed.n > 0 ? atom->x[0] : nullptr;
@@ -409,70 +296,29 @@ fibrad_insitu_bed present_bed(const Driver *driver) {
     return bed;
 }
 
-/* follow: only particles that have come since the last rows get new ones. */
-void make_rows(Driver *driver, bool follow) {
-    find_conductivities(driver);
-    follow_meshes(driver);
-    const fibrad_insitu_bed bed = present_bed(driver);
-    if (mesh_walls_face(&driver->triangles, MPI_COMM_WORLD, &bed) != 0) stop(WRONG_INPUT, "out of memory");
-    const auto make = follow ? fibrad_insitu_follow : fibrad_insitu_rows;
-    check(driver, make(driver->radiation, &bed, (uint64_t)driver->lmp->update->ntimestep));
-    tell_strays(driver);
-}
-
 /* The temperatures of meshes that the script gives. They are taken from the script or, if `give`, given to it. */
 void share_temperatures(Driver *driver, bool give) {
-    const size_t first = driver->wall.size() - driver->mesh.size();
-    for (size_t m = 0; m < driver->mesh.size(); ++m) {
-        if (driver->options.meshes[m].temperature >= 0) continue;
-        double &of_script = (*mesh_temperature(driver->mesh[m].fix))(0), &ours = driver->wall_temperature[first + m];
+    for (const script_mesh &mesh : driver->mesh) {
+        if (driver->radiation.words[mesh.wall]->temperature_text != nullptr) continue;
+        double &of_script = (*mesh_temperature(mesh.fix))(0), &ours = driver->radiation.temperature[mesh.wall];
         (give ? of_script : ours) = give ? ours : of_script;
     }
-}
-
-/* Computes powers. If particles have come or gone since the last rows, makes new rows before. */
-void make_powers(Driver *driver) {
-    share_temperatures(driver, false);
-    fibrad_insitu_state state{};
-    state.sigma = driver->sigma;
-    state.surroundings = driver->options.surroundings;
-    state.wall_temperature = driver->wall_temperature.data();
-    state.n = driver->id.size();
-    state.id = driver->id.data();
-    state.temperature = driver->temperature->vector_atom;
-    int status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
-    if (status == FIBRAD_E_STATE) {
-        make_rows(driver, true);
-        status = fibrad_insitu_powers(driver->radiation, &state, driver->gain.data(), &driver->totals);
-    }
-    check(driver, status);
-    tell_strays(driver);
-    if (!driver->options.contact.empty()) {
-        const fibrad_insitu_bed bed = present_bed(driver);
-        fibrad_insitu_contacts *spots = &driver->options.spots;
-        spots->conductivity = driver->contact_solid.data();
-        check(driver, fibrad_insitu_conduct(driver->radiation, spots, &bed, &state, driver->by_contacts.data(),
-                                            driver->conductance.data(), &driver->conducted));
-    }
-    check_time_step(driver);
-    check_walls(driver);
 }
 
 /* Adds the heat that the current powers have brought in the steps before `now`, also to walls that store it. */
 void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     if (!driver->radiates) return;
     const double seconds = driver->lmp->update->dt * (double)(now - driver->since);
-    driver->heat += seconds * driver->totals.particles;
-    driver->heat_surroundings += seconds * driver->totals.surroundings;
-    driver->through += seconds * driver->conducted.particles;
-    double power[FIBRAD_WALLS_MAX];
-    for (size_t k = 0; k < driver->wall.size(); ++k) {
-        driver->heat_wall[k] += seconds * driver->totals.wall[k];
-        driver->through_wall[k] += seconds * driver->conducted.wall[k];
-        power[k] = driver->totals.wall[k] + driver->conducted.wall[k];
+    const struct radiation &r = driver->radiation;
+    driver->heat += seconds * r.totals.particles;
+    driver->heat_surroundings += seconds * r.totals.surroundings;
+    driver->through += seconds * r.conducted.particles;
+    for (uint32_t k = 0; k < r.walls; ++k) {
+        driver->heat_wall[k] += seconds * r.totals.wall[k];
+        driver->through_wall[k] += seconds * r.conducted.wall[k];
     }
     share_temperatures(driver, false);
-    driver->wall_heat.step(power, seconds, &driver->wall_temperature);
+    radiation_heat_walls(&driver->radiation, seconds);
     share_temperatures(driver, true);
 }
 
@@ -496,12 +342,21 @@ void count_particles(Driver *driver) {
 void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     const LAMMPS_NS::bigint first = step + (driver->lmp->update->setupflag ? 1 : 0);
     count_heat(driver, first);
-    take_particles(driver);
-    if (!driver->radiates || step % driver->options.rows == 0) make_rows(driver, false);
-    make_powers(driver);
+    struct radiation *r = &driver->radiation;
+    const int64_t number = driver->lmp->update->ntimestep;
+    const long every = (long)driver->options.every;
+    const double *t = driver->temperature->vector_atom;
+    const fibrad_insitu_bed bed = present_bed(driver);
+    if (!driver->radiates || number % driver->options.rows == 0)
+        check(driver, radiation_rows(r, &bed, (uint64_t)number, false));
+    share_temperatures(driver, false);
+    check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), driver->gain.data(),
+                                   driver->conductance.data()));
+    check(driver, radiation_stable(r, &bed, t, driver->heat_capacity.data(), driver->conductance.data(),
+                                   driver->lmp->update->dt * (double)every, every));
     double *source = driver->source->vector_atom, *power = driver->power->vector_atom;
     for (int i = 0; i < n; ++i) {
-        const double gain = driver->gain[(size_t)i] + driver->by_contacts[(size_t)i];
+        const double gain = driver->gain[(size_t)i];
         source[i] = source[i] - power[i] + gain;
         power[i] = gain;
     }
@@ -536,20 +391,21 @@ double stored_heat(const Driver *driver) {
 void print_summary(const Driver *driver, double before, double after, double seconds) {
     const double came = sum_of_ranks(driver->came), gone = sum_of_ranks(driver->gone);
     fibrad_insitu_facts facts;
-    fibrad_insitu_facts_get(driver->radiation, &facts);
+    fibrad_insitu_facts_get(driver->radiation.insitu, &facts);
+    const uint32_t walls = driver->radiation.walls;
+    const char *const *name = driver->radiation.name;
     if (rank() != 0) return;
     std::printf("particles %" PRIu64 "\nentries %" PRIu64 "\ncutoff %.17g\n", facts.particles, facts.entries,
                 facts.cutoff);
     std::printf("heat_before %.17g\nheat_after %.17g\n", before, after);
     std::printf("radiation_particles %.17g\n", driver->heat);
     std::printf("radiation_surroundings %.17g\n", driver->heat_surroundings);
-    for (size_t k = 0; k < driver->wall.size(); ++k)
-        std::printf("radiation_%s %.17g\n", driver->wall_name[k].c_str(), driver->heat_wall[k]);
+    for (uint32_t k = 0; k < walls; ++k) std::printf("radiation_%s %.17g\n", name[k], driver->heat_wall[k]);
     if (!driver->options.contact.empty()) std::printf("contacts_particles %.17g\n", driver->through);
-    for (size_t k = 0; k < driver->wall.size() && !driver->options.contact.empty(); ++k)
-        std::printf("contacts_%s %.17g\n", driver->wall_name[k].c_str(), driver->through_wall[k]);
-    for (size_t k = 0; k < driver->wall.size(); ++k)
-        std::printf("temperature_%s %.17g\n", driver->wall_name[k].c_str(), driver->wall_temperature[k]);
+    for (uint32_t k = 0; k < walls && !driver->options.contact.empty(); ++k)
+        std::printf("contacts_%s %.17g\n", name[k], driver->through_wall[k]);
+    for (uint32_t k = 0; k < walls; ++k)
+        std::printf("temperature_%s %.17g\n", name[k], driver->radiation.temperature[k]);
     std::printf("heat_came %.17g\nheat_gone %.17g\n", came, gone);
     std::printf("conduction_and_sources %.17g\n", after - before - driver->heat - driver->through - came + gone);
     std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\ngone %" PRIu64 "\n", facts.outside,
@@ -581,9 +437,7 @@ void run_script(Driver *driver) {
     if (driver->lmp->domain->box_exist == 0) stop(WRONG_INPUT, "the script makes no box");
     check_box(driver);
     find_properties(driver);
-    place_walls(driver);
     find_meshes(driver);
-    find_capacities(driver);
     command(driver, "fix fibrad all external pf/callback 1 1");
     LAMMPS_NS::Modify *modify = driver->lmp->modify;
     Fix *fix = modify->fix[modify->find_fix("fibrad")];
@@ -597,8 +451,9 @@ void run_steps(Driver *driver) {
     count_particles(driver);
     driver->gone -= stored_heat(driver);
     const double after = sum_of_ranks(stored_heat(driver));
-    if (driver->options.rows_file != nullptr)
-        check(driver, fibrad_insitu_write(driver->radiation, driver->options.rows_file));
+    if (driver->options.rows_file != nullptr &&
+        fibrad_insitu_write(driver->radiation.insitu, driver->options.rows_file))
+        stop(WRONG_INPUT, fibrad_insitu_message(driver->radiation.insitu));
     print_summary(driver, before, after, MPI_Wtime() - start);
 }
 
@@ -609,7 +464,12 @@ int main(int argc, char **argv) {
     Driver driver{};
     int rest;
     std::string wrong;
-    const int parsed = liggghts_options_parse(argc, argv, &driver.options, &rest, &wrong);
+    driver.radiation.surroundings = NAN;
+    driver.radiation.heats = true;
+    driver.radiation.place_meshes = place_meshes;
+    driver.radiation.say = say;
+    driver.radiation.simulation = &driver;
+    const int parsed = liggghts_options_parse(argc, argv, &driver.options, &driver.radiation, &rest, &wrong);
     if (parsed == OPTIONS_WRONG) stop(WRONG_USE, wrong + "; see fibrad_liggghts --help");
     if (parsed == OPTIONS_HELP) {
         if (rank() == 0) liggghts_options_help();
@@ -617,16 +477,13 @@ int main(int argc, char **argv) {
         return 0;
     }
     check_script(driver.options.script);
-    if (fibrad_insitu_new(&driver.radiation, MPI_COMM_WORLD, &driver.options.config) != FIBRAD_OK)
-        stop(WRONG_INPUT, "out of memory");
     argv[rest - 1] = argv[0];
     void *lmp;
     lammps_open(argc - rest + 1, argv + rest - 1, MPI_COMM_WORLD, &lmp);
     driver.lmp = static_cast<LAMMPS *>(lmp);
     run_script(&driver);
     run_steps(&driver);
-    fibrad_insitu_free(driver.radiation);
-    mesh_walls_free(&driver.triangles);
+    radiation_free(&driver.radiation);
     lammps_close(lmp);
     MPI_Finalize();
     return 0;

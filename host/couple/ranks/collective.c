@@ -1,4 +1,4 @@
-/* collective.c - errors that all ranks agree on, and messages that ranks do not expect.
+/* collective.c - errors that all ranks agree on, and elements for other ranks.
  * SPDX-License-Identifier: MIT */
 #include "couple/ranks/collective.h"
 
@@ -7,8 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#define COUNT_TAG 12013
-#define DATA_TAG  12014
+#define DATA_TAG 12013
 
 int fibrad_refuse(char *message, int status, const char *format, ...) {
     va_list list;
@@ -47,29 +46,6 @@ void fibrad_count_starts(const int *count, int ranks, int *start) {
     for (int q = 0; q < ranks; ++q) start[q] = sum, sum += count[q];
 }
 
-/* Tells each rank how many elements it will get. A rank does not know how many others will tell it. So it receives
- * until every rank knows that all it told has arrived. The caller must let ranks agree before it calls again. Source:
- * T. Hoefler, C. Siebert, A. Lumsdaine, PPoPP 2010, 159: nonblocking consensus. count: NULL for nothing. */
-static void tell_counts(MPI_Comm comm, int ranks, const int *count, int *got, MPI_Request *told) {
-    int tellings = 0, arrived, all_arrived = 0, over = 0;
-    MPI_Request others = MPI_REQUEST_NULL;
-    MPI_Status from;
-    for (int q = 0; q < ranks; ++q) {
-        got[q] = 0;
-        if (count && count[q]) MPI_Issend(&count[q], 1, MPI_INT, q, COUNT_TAG, comm, &told[tellings++]);
-    }
-    while (!over) {
-        MPI_Iprobe(MPI_ANY_SOURCE, COUNT_TAG, comm, &arrived, &from);
-        if (arrived) MPI_Recv(&got[from.MPI_SOURCE], 1, MPI_INT, from.MPI_SOURCE, COUNT_TAG, comm, MPI_STATUS_IGNORE);
-        if (all_arrived) {
-            MPI_Test(&others, &over, MPI_STATUS_IGNORE);
-        } else {
-            MPI_Testall(tellings, told, &all_arrived, MPI_STATUSES_IGNORE);
-            if (all_arrived) MPI_Ibarrier(comm, &others);
-        }
-    }
-}
-
 static void send_elements(MPI_Comm comm, int ranks, const char *send, const int *count, char *to, const int *got,
                           size_t size, MPI_Request *request) {
     int requests = 0;
@@ -90,10 +66,12 @@ int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, s
     MPI_Comm_size(comm, &ranks);
     MPI_Request *request = malloc(2 * (size_t)ranks * sizeof(MPI_Request));
     if (!status && (!request || fibrad_count_sum(count, ranks) > INT_MAX)) status = FIBRAD_E_MEMORY;
-    tell_counts(comm, ranks, status ? NULL : count, got, request);
-    const size_t sum = fibrad_count_sum(got, ranks);
-    if (!status) status = sum > INT_MAX ? FIBRAD_E_MEMORY : fibrad_block_fit(to, at + sum, size);
     status = fibrad_agree(comm, status, NULL);
+    if (!status) {
+        MPI_Alltoall(count, 1, MPI_INT, got, 1, MPI_INT, comm);
+        const size_t sum = fibrad_count_sum(got, ranks);
+        status = fibrad_agree(comm, sum > INT_MAX ? FIBRAD_E_MEMORY : fibrad_block_fit(to, at + sum, size), NULL);
+    }
     if (!status) send_elements(comm, ranks, send, count, (char *)to->at + at * size, got, size, request);
     free(request);
     return status;

@@ -1,4 +1,4 @@
-/* collective.h - errors that all ranks agree on, and messages that ranks do not expect.
+/* collective.h - errors that all ranks agree on, and elements for other ranks.
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_COUPLE_COLLECTIVE_H
 #define FIBRAD_COUPLE_COLLECTIVE_H
@@ -35,8 +35,8 @@ int fibrad_agree(MPI_Comm comm, int status, char *message);
 
 /* Collective. Sends elements of `size` bytes from `send` to ranks: count[q] elements to rank q, in the order of ranks.
  * The elements that arrive, got[q] from rank q, are put behind the first `at` elements of `to`, in the order of ranks.
- * Only ranks that have elements for each other exchange messages, two for each pair and direction. If a rank passes an
- * error as `status`, no elements are sent, and `count` is not read. Errors, on all ranks: that status; _MEMORY. */
+ * Ranks that have elements for each other exchange one message. If a rank passes an error as `status`, no elements are
+ * sent, and `count` is not read. Errors, on all ranks: that status; _MEMORY. */
 int fibrad_deal(MPI_Comm comm, int status, const void *send, const int *count, size_t size, fibrad_block *to, size_t at,
                 int *got);
 

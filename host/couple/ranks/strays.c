@@ -30,7 +30,7 @@ static bool opening_holds(const fibrad_plane *plane, const fibrad_particle *p) {
 
 static void describe(char *message, const fibrad_particle *p, const char *fault, const fibrad_plane *plane) {
     char name[] = "the cylinder";
-    if (plane) snprintf(name, sizeof name, "%c%s", "xyz"[plane->axis], plane -> upper ? "hi" : "lo");
+    if (plane) snprintf(name, sizeof name, "%c%s", "xyz"[plane->axis], plane -> upper ? "max" : "min");
     fibrad_refuse(message, 0, "particle %" PRIu64 " at (%.6g, %.6g, %.6g): %s %s", p->id, p->x[0], p->x[1], p->x[2],
                   fault, name);
 }

@@ -1,5 +1,5 @@
 /* mesh_motion.c - where the corners of a mesh are that turns and travels. SPDX-License-Identifier: MIT */
-#include "couple/walls/mesh_motion.h"
+#include "couple/simulation/mesh_motion.h"
 
 #include <math.h>
 
