@@ -84,35 +84,6 @@ module fibrad
         type(c_ptr) :: id = c_null_ptr
     end type c_spheres
 
-    type, bind(C) :: c_beam_rule
-        integer(c_int32_t) :: directions = 0, points = 0
-        real(c_double) :: cutoff = 0, tolerance = 0
-        integer(c_int64_t) :: turn = 0
-        type(c_ptr) :: lines = c_null_ptr
-        integer(c_int32_t) :: chords = 0
-    end type c_beam_rule
-
-    type, bind(C) :: c_surface_rule
-        integer(c_int32_t) :: nodes = 0, flags = 0
-        real(c_double) :: cutoff = 0
-        integer(c_int) :: isa = 0
-    end type c_surface_rule
-
-    type, bind(C) :: c_cast_rule
-        integer(c_int32_t) :: rays = 0
-        integer(c_int) :: random = 0
-        integer(c_int64_t) :: seed = 0
-        real(c_double) :: cutoff = 0
-    end type c_cast_rule
-
-    type, bind(C) :: c_bed_options
-        type(c_ptr) :: beam = c_null_ptr, surface = c_null_ptr, cast = c_null_ptr, wanted = c_null_ptr
-        integer(c_int) :: raw = 0
-        real(c_double) :: drop = 0
-        integer(c_int) :: walls = 1
-        type(c_ptr) :: scratch = c_null_ptr
-    end type c_bed_options
-
     type, bind(C) :: c_fault
         integer(c_int32_t) :: first = 0, second = 0, triangle = -1, wall = 0
         integer(c_int) :: why = 0
@@ -125,15 +96,6 @@ module fibrad
         type(c_fault) :: fault
     end type c_run
 
-    type, bind(C) :: c_factors
-        integer(c_int32_t) :: n = 0, walls = 0
-        type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr, escaped = c_null_ptr, &
-            beyond = c_null_ptr, error = c_null_ptr, wall = c_null_ptr, wall_wall = c_null_ptr, &
-            wall_escaped = c_null_ptr, wall_error = c_null_ptr
-        real(c_double) :: wall_correction = 0, wall_closure = 0, changed = 0
-        integer(c_int32_t) :: changed_row = 0
-    end type c_factors
-
     type, bind(C) :: c_scene_facts
         integer(c_int32_t) :: spheres = 0, walls = 0
         integer(c_int) :: isa = 0
@@ -142,15 +104,26 @@ module fibrad
         integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0
     end type c_scene_facts
 
-    type, bind(C) :: c_bed_factors
-        type(c_factors) :: matrix
-        type(c_scene_facts) :: facts
-        type(c_ptr) :: wall_area = c_null_ptr
-        integer(c_int) :: threads = 0
-        integer(c_int32_t) :: directions = 0
-        integer(c_int64_t) :: fallbacks = 0, rays = 0
-        real(c_double) :: seconds = 0, closure_error = 0, reciprocity_error = 0
-    end type c_bed_factors
+    type, bind(C) :: c_warning
+        integer(c_int) :: code = 0
+        integer(c_int32_t) :: first = 0, second = 0, wall = 0, count = 0
+        real(c_double) :: value = 0, other = 0
+    end type c_warning
+
+    type, bind(C) :: c_beam_rule
+        integer(c_int32_t) :: directions = 0, points = 0
+        real(c_double) :: cutoff = 0, tolerance = 0
+        integer(c_int64_t) :: turn = 0
+        type(c_ptr) :: lines = c_null_ptr
+        integer(c_int32_t) :: chords = 0
+    end type c_beam_rule
+
+    type, bind(C) :: c_cast_rule
+        integer(c_int32_t) :: rays = 0
+        integer(c_int) :: random = 0
+        integer(c_int64_t) :: seed = 0
+        real(c_double) :: cutoff = 0
+    end type c_cast_rule
 
     type, bind(C) :: c_exchange_rule
         type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr
@@ -163,6 +136,33 @@ module fibrad
         real(c_double) :: known_paths = 0
     end type c_exchange_rule
 
+    type, bind(C) :: c_bed_rule
+        type(c_ptr) :: beam = c_null_ptr, cast = c_null_ptr, exchange = c_null_ptr, wanted = c_null_ptr
+        integer(c_int) :: raw = 0
+        real(c_double) :: drop = 0
+        integer(c_int) :: walls = 0
+        type(c_ptr) :: scratch = c_null_ptr
+    end type c_bed_rule
+
+    type, bind(C) :: c_factors
+        integer(c_int32_t) :: n = 0, walls = 0
+        type(c_ptr) :: start = c_null_ptr, col = c_null_ptr, f = c_null_ptr, escaped = c_null_ptr, &
+            beyond = c_null_ptr, error = c_null_ptr, wall = c_null_ptr, wall_wall = c_null_ptr, &
+            wall_escaped = c_null_ptr, wall_error = c_null_ptr
+        real(c_double) :: wall_correction = 0, wall_closure = 0, changed = 0
+        integer(c_int32_t) :: changed_row = 0
+    end type c_factors
+
+    type, bind(C) :: c_bed_matrix
+        type(c_factors) :: matrix
+        type(c_scene_facts) :: facts
+        type(c_ptr) :: wall_area = c_null_ptr
+        integer(c_int) :: threads = 0
+        integer(c_int32_t) :: directions = 0
+        integer(c_int64_t) :: fallbacks = 0, rays = 0
+        real(c_double) :: seconds = 0, closure_error = 0, reciprocity_error = 0
+    end type c_bed_matrix
+
     type, bind(C) :: c_wall_rule
         type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr, node_emissivity = c_null_ptr, &
             conductivity = c_null_ptr
@@ -174,10 +174,6 @@ module fibrad
         real(c_double) :: wall(32) = 0, spheres = 0, escaped = 0, error = 0
         integer(c_int64_t) :: rays = 0, paths = 0
     end type c_wall_row
-
-    type, bind(C) :: c_side_view
-        real(c_double) :: spheres = 0, walls = 0, escaped = 0
-    end type c_side_view
 
     type, bind(C) :: c_displacement_rule
         type(c_ptr) :: emissivity = c_null_ptr, wall_emissivity = c_null_ptr, conductivity = c_null_ptr
@@ -200,12 +196,16 @@ module fibrad
             wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = fibrad_stefan_boltzmann, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
-        integer(c_int) :: uniform = 0
         type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr, &
             absorbed = c_null_ptr, contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0
         type(c_ptr) :: contact_places = c_null_ptr
     end type c_heat_sources
+
+    type, bind(C) :: c_law
+        type(c_funptr) :: follow = c_null_funptr
+        type(c_ptr) :: context = c_null_ptr, emissivity = c_null_ptr, wall_emissivity = c_null_ptr
+    end type c_law
 
     type, bind(C) :: c_heat_result
         type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
@@ -233,7 +233,6 @@ module fibrad
         integer(c_int32_t) :: lights = 0
         type(c_ptr) :: absorptivity = c_null_ptr, wall_absorptivity = c_null_ptr
         real(c_double) :: tolerance = 0
-        integer(c_int) :: uniform = 0
     end type c_light_sources
 
     type, bind(C) :: c_light_result
@@ -244,12 +243,6 @@ module fibrad
         type(c_ptr) :: patches = c_null_ptr
     end type c_light_result
 
-    type, bind(C) :: c_transient_config
-        integer(c_int) :: method = 0
-        type(c_exchange_rule) :: exchange
-        type(c_heat_config) :: heat
-    end type c_transient_config
-
     type, bind(C) :: c_span
         type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
         real(c_double) :: duration = 0
@@ -259,7 +252,8 @@ module fibrad
         real(c_double) :: surroundings_power = 0
         type(c_ptr) :: wall_energy = c_null_ptr
         real(c_double) :: surroundings_energy = 0
-        type(c_funptr) :: observe = c_null_funptr, law = c_null_funptr
+        type(c_ptr) :: law = c_null_ptr
+        type(c_funptr) :: observe = c_null_funptr
         type(c_ptr) :: context = c_null_ptr
         real(c_double) :: error = 0
         integer(c_int64_t) :: steps = 0, refused = 0, sweeps = 0, corrections = 0
@@ -298,184 +292,116 @@ module fibrad
             real(c_double), value :: conductivity
             real(c_double) :: c_node_emissivity
         end function c_node_emissivity
-        function c_view_factors(config, spheres, options, run, factors) bind(C, name="fibrad_view_factors")
+        function c_bed_new(bed, config, spheres, run) bind(C, name="fibrad_bed_new")
+            import
+            type(c_ptr), intent(out) :: bed
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            type(c_run), intent(inout) :: run
+            integer(c_int) :: c_bed_new
+        end function c_bed_new
+        function c_bed_move(bed, config, spheres) bind(C, name="fibrad_bed_move")
+            import
+            type(c_ptr), value :: bed
+            type(c_scene_config), intent(in) :: config
+            type(c_spheres), intent(in) :: spheres
+            integer(c_int) :: c_bed_move
+        end function c_bed_move
+        subroutine c_bed_describe(bed, facts, fault) bind(C, name="fibrad_bed_describe")
+            import
+            type(c_ptr), value :: bed
+            type(c_scene_facts), intent(inout) :: facts
+            type(c_fault), intent(inout) :: fault
+        end subroutine c_bed_describe
+        function c_bed_warnings(bed, warning) bind(C, name="fibrad_bed_warnings")
+            import
+            type(c_ptr), value :: bed
+            type(c_warning), intent(inout) :: warning
+            integer(c_int32_t) :: c_bed_warnings
+        end function c_bed_warnings
+        subroutine c_bed_free(bed) bind(C, name="fibrad_bed_free")
+            import
+            type(c_ptr), value :: bed
+        end subroutine c_bed_free
+        function c_bed_factors(bed, rule, matrix) bind(C, name="fibrad_bed_factors")
+            import
+            type(c_ptr), value :: bed
+            type(c_bed_rule), intent(in) :: rule
+            type(c_ptr), intent(out) :: matrix
+            integer(c_int) :: c_bed_factors
+        end function c_bed_factors
+        subroutine c_bed_matrix_free(matrix) bind(C, name="fibrad_bed_matrix_free")
+            import
+            type(c_bed_matrix), intent(inout) :: matrix
+        end subroutine c_bed_matrix_free
+        function c_view_factors(config, spheres, rule, run, matrix) bind(C, name="fibrad_view_factors")
             import
             type(c_scene_config), intent(in) :: config
             type(c_spheres), intent(in) :: spheres
-            type(c_bed_options), intent(in) :: options
+            type(c_bed_rule), intent(in) :: rule
             type(c_run), intent(inout) :: run
-            type(c_ptr), intent(out) :: factors
+            type(c_ptr), intent(out) :: matrix
             integer(c_int) :: c_view_factors
         end function c_view_factors
-        function c_exchange_factors(config, spheres, rule, options, run, &
-            factors) bind(C, name="fibrad_exchange_factors")
+        function c_bed_wall_row(bed, wall, rule, tolerance, row) bind(C, name="fibrad_bed_wall_row")
             import
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_exchange_rule), intent(in) :: rule
-            type(c_bed_options), intent(in) :: options
-            type(c_run), intent(inout) :: run
-            type(c_ptr), intent(out) :: factors
-            integer(c_int) :: c_exchange_factors
-        end function c_exchange_factors
-        subroutine c_bed_free(factors) bind(C, name="fibrad_bed_free")
-            import
-            type(c_bed_factors), intent(inout) :: factors
-        end subroutine c_bed_free
-        function c_exchange_wall_row(config, spheres, wall, rule, tolerance, run, &
-            row) bind(C, name="fibrad_exchange_wall_row")
-            import
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
+            type(c_ptr), value :: bed
             integer(c_int32_t), value :: wall
             type(c_wall_rule), intent(in) :: rule
             real(c_double), value :: tolerance
-            type(c_run), intent(inout) :: run
             type(c_wall_row), intent(inout) :: row
-            integer(c_int) :: c_exchange_wall_row
-        end function c_exchange_wall_row
-        function c_side_views(config, spheres, rays, run, view) bind(C, name="fibrad_side_views")
+            integer(c_int) :: c_bed_wall_row
+        end function c_bed_wall_row
+        function c_bed_displacements(bed, rule, wanted, displacement) bind(C, name="fibrad_bed_displacements")
             import
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            integer(c_int32_t), value :: rays
-            type(c_run), intent(inout) :: run
-            type(c_side_view), intent(inout) :: view(*)
-            integer(c_int) :: c_side_views
-        end function c_side_views
-        function c_displacements(config, spheres, rule, wanted, run, displacement, &
-            facts) bind(C, name="fibrad_displacements")
-            import
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
+            type(c_ptr), value :: bed
             type(c_displacement_rule), intent(in) :: rule
             type(c_ptr), value :: wanted
-            type(c_run), intent(inout) :: run
             type(c_displacement), intent(inout) :: displacement(*)
-            type(c_scene_facts), intent(inout) :: facts
-            integer(c_int) :: c_displacements
-        end function c_displacements
-        function c_radiation_new(radiation, config, spheres, heat_config, run) bind(C, name="fibrad_radiation_new")
+            integer(c_int) :: c_bed_displacements
+        end function c_bed_displacements
+        function c_bed_beams(bed, config) bind(C, name="fibrad_bed_beams")
             import
-            type(c_ptr), intent(out) :: radiation
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            type(c_heat_config), intent(in) :: heat_config
-            type(c_run), intent(inout) :: run
-            integer(c_int) :: c_radiation_new
-        end function c_radiation_new
-        function c_radiation_move(radiation, config, spheres) bind(C, name="fibrad_radiation_move")
+            type(c_ptr), value :: bed
+            type(c_heat_config), intent(in) :: config
+            integer(c_int) :: c_bed_beams
+        end function c_bed_beams
+        function c_bed_solve(bed, sources, law, result) bind(C, name="fibrad_bed_solve")
             import
-            type(c_ptr), value :: radiation
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
-            integer(c_int) :: c_radiation_move
-        end function c_radiation_move
-        function c_radiation_solve(radiation, sources, result) bind(C, name="fibrad_radiation_solve")
-            import
-            type(c_ptr), value :: radiation
+            type(c_ptr), value :: bed
             type(c_heat_sources), intent(in) :: sources
+            type(c_law), intent(inout) :: law
             type(c_heat_result), intent(inout) :: result
-            integer(c_int) :: c_radiation_solve
-        end function c_radiation_solve
-        function c_radiation_sides(radiation, flux, temperature) bind(C, name="fibrad_radiation_sides")
+            integer(c_int) :: c_bed_solve
+        end function c_bed_solve
+        function c_bed_sides(bed, flux, temperature) bind(C, name="fibrad_bed_sides")
             import
-            type(c_ptr), value :: radiation
+            type(c_ptr), value :: bed
             type(c_ptr), value :: flux
             type(c_ptr), value :: temperature
-            integer(c_int) :: c_radiation_sides
-        end function c_radiation_sides
-        function c_radiation_settle(radiation, sources, law, context, emissivity, wall_emissivity, &
-            result) bind(C, name="fibrad_radiation_settle")
+            integer(c_int) :: c_bed_sides
+        end function c_bed_sides
+        function c_bed_shine(bed, sources, result) bind(C, name="fibrad_bed_shine")
             import
-            type(c_ptr), value :: radiation
-            type(c_heat_sources), intent(in) :: sources
-            type(c_funptr), value :: law
-            type(c_ptr), value :: context
-            type(c_ptr), value :: emissivity
-            type(c_ptr), value :: wall_emissivity
-            type(c_heat_result), intent(inout) :: result
-            integer(c_int) :: c_radiation_settle
-        end function c_radiation_settle
-        function c_radiation_shine(radiation, sources, result) bind(C, name="fibrad_radiation_shine")
-            import
-            type(c_ptr), value :: radiation
+            type(c_ptr), value :: bed
             type(c_light_sources), intent(in) :: sources
             type(c_light_result), intent(inout) :: result
-            integer(c_int) :: c_radiation_shine
-        end function c_radiation_shine
-        subroutine c_radiation_describe(radiation, facts, fault) bind(C, name="fibrad_radiation_describe")
+            integer(c_int) :: c_bed_shine
+        end function c_bed_shine
+        function c_bed_advance(bed, sources, span) bind(C, name="fibrad_bed_advance")
             import
-            type(c_ptr), value :: radiation
-            type(c_scene_facts), intent(inout) :: facts
-            type(c_fault), intent(inout) :: fault
-        end subroutine c_radiation_describe
-        subroutine c_radiation_free(radiation) bind(C, name="fibrad_radiation_free")
-            import
-            type(c_ptr), value :: radiation
-        end subroutine c_radiation_free
-        function c_transient_new(transient, scene, spheres, config, run) bind(C, name="fibrad_transient_new")
-            import
-            type(c_ptr), intent(out) :: transient
-            type(c_scene_config), intent(in) :: scene
-            type(c_spheres), intent(in) :: spheres
-            type(c_transient_config), intent(in) :: config
-            type(c_run), intent(inout) :: run
-            integer(c_int) :: c_transient_new
-        end function c_transient_new
-        function c_transient_move(transient, scene, spheres) bind(C, name="fibrad_transient_move")
-            import
-            type(c_ptr), value :: transient
-            type(c_scene_config), intent(in) :: scene
-            type(c_spheres), intent(in) :: spheres
-            integer(c_int) :: c_transient_move
-        end function c_transient_move
-        function c_transient_powers(transient, sources, result) bind(C, name="fibrad_transient_powers")
-            import
-            type(c_ptr), value :: transient
-            type(c_heat_sources), intent(in) :: sources
-            type(c_heat_result), intent(inout) :: result
-            integer(c_int) :: c_transient_powers
-        end function c_transient_powers
-        function c_transient_sides(transient, flux, temperature) bind(C, name="fibrad_transient_sides")
-            import
-            type(c_ptr), value :: transient
-            type(c_ptr), value :: flux
-            type(c_ptr), value :: temperature
-            integer(c_int) :: c_transient_sides
-        end function c_transient_sides
-        function c_transient_shine(transient, sources, result) bind(C, name="fibrad_transient_shine")
-            import
-            type(c_ptr), value :: transient
-            type(c_light_sources), intent(in) :: sources
-            type(c_light_result), intent(inout) :: result
-            integer(c_int) :: c_transient_shine
-        end function c_transient_shine
-        function c_transient_advance(transient, sources, span) bind(C, name="fibrad_transient_advance")
-            import
-            type(c_ptr), value :: transient
+            type(c_ptr), value :: bed
             type(c_heat_sources), intent(in) :: sources
             type(c_span), intent(inout) :: span
-            integer(c_int) :: c_transient_advance
-        end function c_transient_advance
-        subroutine c_transient_describe(transient, facts, fault) bind(C, name="fibrad_transient_describe")
+            integer(c_int) :: c_bed_advance
+        end function c_bed_advance
+        function c_bed_contacts(bed, rule, list) bind(C, name="fibrad_bed_contacts")
             import
-            type(c_ptr), value :: transient
-            type(c_scene_facts), intent(inout) :: facts
-            type(c_fault), intent(inout) :: fault
-        end subroutine c_transient_describe
-        subroutine c_transient_free(transient) bind(C, name="fibrad_transient_free")
-            import
-            type(c_ptr), value :: transient
-        end subroutine c_transient_free
-        function c_contacts_find(config, spheres, rule, list) bind(C, name="fibrad_contacts_find")
-            import
-            type(c_scene_config), intent(in) :: config
-            type(c_spheres), intent(in) :: spheres
+            type(c_ptr), value :: bed
             type(c_contact_rule), intent(in) :: rule
             type(c_ptr), intent(out) :: list
-            integer(c_int) :: c_contacts_find
-        end function c_contacts_find
+            integer(c_int) :: c_bed_contacts
+        end function c_bed_contacts
         function c_contacts_conduct(list, rule, solid, gas, conductance) bind(C, name="fibrad_contacts_conduct")
             import
             type(c_contact_list), intent(in) :: list
@@ -485,10 +411,6 @@ module fibrad
             type(c_ptr), value :: conductance
             integer(c_int) :: c_contacts_conduct
         end function c_contacts_conduct
-        subroutine c_contacts_free(list) bind(C, name="fibrad_contacts_free")
-            import
-            type(c_contact_list), intent(inout) :: list
-        end subroutine c_contacts_free
         function c_heap_resize(context, block, size) bind(C, name="fibrad_heap_resize")
             import
             type(c_ptr), value :: context
@@ -503,25 +425,24 @@ module fibrad
         end function c_host_sizeof
     end interface
 
-    character(24), parameter :: c_names(32) = [character(24) :: &
+    character(24), parameter :: c_names(31) = [character(24) :: &
         'fibrad_plane', 'fibrad_cylinder', 'fibrad_wall', 'fibrad_occupancy', 'fibrad_triangles', &
-        'fibrad_scene_config', 'fibrad_spheres', 'fibrad_beam_rule', 'fibrad_surface_rule', 'fibrad_cast_rule', &
-        'fibrad_bed_options', 'fibrad_fault', 'fibrad_run', 'fibrad_factors', 'fibrad_scene_facts', &
-        'fibrad_bed_factors', 'fibrad_exchange_rule', 'fibrad_wall_rule', 'fibrad_wall_row', 'fibrad_side_view', &
-        'fibrad_displacement_rule', 'fibrad_displacement', 'fibrad_heat_config', 'fibrad_heat_sources', &
-        'fibrad_heat_result', 'fibrad_light', 'fibrad_light_sources', 'fibrad_light_result', &
-        'fibrad_transient_config', 'fibrad_span', 'fibrad_contact_rule', 'fibrad_contact_list']
-    integer, parameter :: c_bits(32) = [ &
+        'fibrad_scene_config', 'fibrad_spheres', 'fibrad_fault', 'fibrad_run', 'fibrad_scene_facts', 'fibrad_warning', &
+        'fibrad_beam_rule', 'fibrad_cast_rule', 'fibrad_exchange_rule', 'fibrad_bed_rule', 'fibrad_factors', &
+        'fibrad_bed_matrix', 'fibrad_wall_rule', 'fibrad_wall_row', 'fibrad_displacement_rule', 'fibrad_displacement', &
+        'fibrad_heat_config', 'fibrad_heat_sources', 'fibrad_law', 'fibrad_heat_result', 'fibrad_light', &
+        'fibrad_light_sources', 'fibrad_light_result', 'fibrad_span', 'fibrad_contact_rule', 'fibrad_contact_list']
+    integer, parameter :: c_bits(31) = [ &
         storage_size(c_plane()), storage_size(c_cylinder()), storage_size(fibrad_wall()), storage_size(c_occupancy()), &
         storage_size(c_triangles()), storage_size(c_scene_config()), storage_size(c_spheres()), &
-        storage_size(c_beam_rule()), storage_size(c_surface_rule()), storage_size(c_cast_rule()), &
-        storage_size(c_bed_options()), storage_size(c_fault()), storage_size(c_run()), storage_size(c_factors()), &
-        storage_size(c_scene_facts()), storage_size(c_bed_factors()), storage_size(c_exchange_rule()), &
-        storage_size(c_wall_rule()), storage_size(c_wall_row()), storage_size(c_side_view()), &
-        storage_size(c_displacement_rule()), storage_size(c_displacement()), storage_size(c_heat_config()), &
-        storage_size(c_heat_sources()), storage_size(c_heat_result()), storage_size(fibrad_light()), &
-        storage_size(c_light_sources()), storage_size(c_light_result()), storage_size(c_transient_config()), &
-        storage_size(c_span()), storage_size(c_contact_rule()), storage_size(c_contact_list())]
+        storage_size(c_fault()), storage_size(c_run()), storage_size(c_scene_facts()), storage_size(c_warning()), &
+        storage_size(c_beam_rule()), storage_size(c_cast_rule()), storage_size(c_exchange_rule()), &
+        storage_size(c_bed_rule()), storage_size(c_factors()), storage_size(c_bed_matrix()), &
+        storage_size(c_wall_rule()), storage_size(c_wall_row()), storage_size(c_displacement_rule()), &
+        storage_size(c_displacement()), storage_size(c_heat_config()), storage_size(c_heat_sources()), &
+        storage_size(c_law()), storage_size(c_heat_result()), storage_size(fibrad_light()), &
+        storage_size(c_light_sources()), storage_size(c_light_result()), storage_size(c_span()), &
+        storage_size(c_contact_rule()), storage_size(c_contact_list())]
     ! ---- end of what `make structures` writes
 
     ! The triangles of all walls that are meshes. Seen from its front, the corners of a triangle go counter-clockwise. A
