@@ -12,8 +12,8 @@ symbols=$(nm -A -g "$@") || exit 1
 calls=$(echo "$symbols" | awk '
     NF < 3 { next }
     { split($1, at, ":") }
-    $2 == "U" { user[++uses] = at[2]; used[uses] = $3; next }
-    { home[$3] = at[2] }
+    $2 == "U" { user[++uses] = at[1] ":" at[2]; used[uses] = $3; next }
+    { home[$3] = at[1] ":" at[2] }
     END { for (k = 1; k <= uses; k++) if (used[k] in home) print user[k], home[used[k]] }' | sort -u)
 test -n "$calls" || { echo "no calls among the objects of $BUILD" && exit 1; }
 
