@@ -1,6 +1,7 @@
 /* edges.c - edges of triangles, and connected components with one winding. SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "mesh/welded.h"
 
@@ -83,15 +84,11 @@ static void keep_majority(struct surface *surface, const struct component *compo
 }
 
 static int gather_all_components(struct surface *surface, const uint32_t *partner, bool *met) {
-    uint32_t room = 0;
+    bool good = true;
     for (uint32_t t = 0, listed = 0; t < surface->n; ++t) {
         if (met[t]) continue;
-        if (surface->components == room) {
-            room = room ? 2 * room : 16;
-            struct component *component = realloc(surface->component, room * sizeof *component);
-            if (!component) return message_memory();
-            surface->component = component;
-        }
+        surface->component = memory_grown(surface->component, surface->components, sizeof *surface->component, &good);
+        if (!good) return message_memory();
         struct component *component = &surface->component[surface->components++];
         *component = (struct component){.first = listed, .n = 1, .closed = true};
         met[t] = true;

@@ -31,11 +31,8 @@ static struct ball ball_of(const struct surface *surface, uint32_t triangle) {
     struct ball ball = {.radius = 0};
     for (int k = 0; k < 3; ++k)
         for (int axis = 0; axis < 3; ++axis) ball.centre[axis] += surface_corner(surface, triangle, k)[axis] / 3;
-    for (int k = 0; k < 3; ++k) {
-        const double *c = surface_corner(surface, triangle, k);
-        ball.radius =
-            fmax(ball.radius, hypot(hypot(c[0] - ball.centre[0], c[1] - ball.centre[1]), c[2] - ball.centre[2]));
-    }
+    for (int k = 0; k < 3; ++k)
+        ball.radius = fmax(ball.radius, surface_distance(surface_corner(surface, triangle, k), ball.centre));
     return ball;
 }
 

@@ -46,6 +46,8 @@ int surface_find_components(struct surface *surface);
 
 void surface_free(struct surface *surface);
 
+double surface_distance(const double a[3], const double b[3]);
+
 /* Corner k of a triangle; its normal, whose length is twice its area; its area. */
 const double *surface_corner(const struct surface *surface, uint32_t triangle, int k);
 void surface_normal(const struct surface *surface, uint32_t triangle, double normal[3]);

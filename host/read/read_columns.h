@@ -6,20 +6,22 @@
 #include "read/read_options.h"
 #include "text/read_lines.h"
 
+struct source;
+
 enum { UNIT_LENGTH = 32 };
 
 /* The wanted columns. Each field is an index in a row. */
 struct columns {
-    size_t width;         /* fields of a row */
-    size_t coordinate[3]; /* x, y, z */
-    bool scaled[3];       /* the coordinate is a fraction of the box */
+    const struct fields *header; /* the names; within columns_find only */
+    size_t width;                /* fields of a row */
+    size_t coordinate[3];        /* x, y, z */
+    bool scaled[3];              /* the coordinate is a fraction of the box */
     size_t radius;
     double radius_unit; /* 0.5 for diameters */
     size_t id;          /* width: there is none */
-    size_t *extra;      /* [extras] */
+    size_t *wanted;     /* [extras + rules] the further columns, and those of read_options.rule */
     double *factor;     /* [extras] from the unit of the column to the expected one */
     size_t *named;      /* [names] columns of read_options.name */
-    size_t *ruled;      /* [rules] columns of read_options.rule */
     struct twin *twin;  /* [twins] wanted columns that the file has twice, which must be equal */
     size_t twins;
     size_t *kept;      /* [keeps] columns that are kept as text */
@@ -32,12 +34,11 @@ struct columns {
 };
 
 /* Finds the columns by the names of a header, in any case: x, xu, xs or xsu, and so on; r, radius, diameter or d; id.
- * Columns of options->name go before them. Extra columns have exactly the wanted names, with or without units. units:
- * [names->n] those of the header, NULL: headers of this format have none. The unit of the coordinates becomes that of
- * the bed. Free with columns_free. Status 0, STATUS_MEMORY, or STATUS_INPUT if a column is missing, if units contradict
- * each other, or if coordinates are scaled and the bed has no box. */
-int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names, char *const *units,
-                 const struct read_options *options, struct bed *bed);
+ * Columns of source->options.name go before them. Extra columns have exactly the wanted names, with or without units.
+ * units: [names->n] those of the header, NULL: headers of this format have none. The unit of the coordinates becomes
+ * that of the bed. Free with columns_free. Status 0, STATUS_MEMORY, or STATUS_INPUT if a column is missing, if units
+ * contradict each other, or if coordinates are scaled and the bed has no box. */
+int columns_find(struct source *source, const struct fields *names, char *const *units, struct bed *bed);
 
 void columns_free(struct columns *columns);
 
@@ -46,17 +47,14 @@ bool columns_named(const struct fields *names);
 
 /* Finds the factor from the unit of further column k to the expected one. lengths: the unit of lengths, or "". Status
  * 0, or STATUS_INPUT if the unit is of another kind. */
-int columns_factor(const struct lines *lines, const struct read_options *options, size_t k, const char *unit,
-                   const char *lengths, double *factor);
+int columns_factor(const struct source *source, size_t k, const char *unit, const char *lengths, double *factor);
 
-/* Adds the sphere of one row to the bed, if options->rule allows. Status 0, STATUS_MEMORY, or STATUS_INPUT naming the
- * column. */
-int columns_add(struct columns *columns, const struct lines *lines, const struct fields *row,
-                const struct read_options *options, struct bed *bed);
+/* Adds the sphere of the row in source->fields to the bed, if the rules allow. Status 0, STATUS_MEMORY, or STATUS_INPUT
+ * naming the column. */
+int columns_add(struct source *source, struct bed *bed);
 
 /* Adds a sphere. Refuses a radius that is not above 0, unless radii come from --radius. Status 0, STATUS_MEMORY or
  * STATUS_INPUT. */
-int columns_add_sphere(const struct lines *lines, const struct read_options *options, struct bed_sphere *sphere,
-                       struct bed *bed);
+int columns_add_sphere(const struct source *source, struct bed_sphere *sphere, struct bed *bed);
 
 #endif

@@ -8,6 +8,14 @@
 #include "read/read_options.h"
 #include "text/read_lines.h"
 
+enum found {
+    FOUND_FRAME,
+    FOUND_END,
+    FOUND_PART /* the file ends within a frame */
+};
+
+enum { LACK_MAX = 100 };
+
 /* A file that is being read. */
 struct source {
     struct lines lines;
@@ -15,13 +23,9 @@ struct source {
     struct fields fields;
     struct columns columns;
     char units[sizeof((struct bed *)0)->units]; /* of all frames, as the file names them once */
+    enum found found;                           /* what the format has skipped */
+    char lack[LACK_MAX];                        /* what is missing in a part */
     bool warned;                                /* source_warn_open has warned */
-};
-
-enum found {
-    FOUND_FRAME,
-    FOUND_END,
-    FOUND_PART /* the file ends within a frame */
 };
 
 /* A format. The contents of a file tell its format. */
@@ -29,15 +33,13 @@ struct format {
     /* Whether a file has this format, by its first bytes, which lines_open has read. */
     bool (*is)(const struct source *source);
 
-    /* Skips a frame, without splitting lines, and checks that all its lines are there. FOUND_PART: lack, of LACK_MAX
-     * bytes, says what is missing. NULL: files of the format have one frame. */
-    int (*skip)(struct source *source, enum found *found, char *lack);
+    /* Skips a frame, without splitting lines, and checks that all its lines are there. Sets source->found, and
+     * source->lack if it is FOUND_PART. NULL: files of the format have one frame. */
+    int (*skip)(struct source *source);
 
     /* Reads a frame into an empty bed. */
     int (*read)(struct source *source, struct bed *bed);
 };
-
-enum { LACK_MAX = 100 };
 
 /* The first bytes of the file. Call it before the first line is read. */
 const char *source_begin(const struct source *source, size_t *size);
@@ -51,8 +53,8 @@ extern const struct format format_data, format_dump, format_mercury, format_tabl
 /* Refuses a file of a known kind that has no spheres, and says what the file is. Status 0 or STATUS_INPUT. */
 int source_foreign(const struct source *source);
 
-/* Prints the error `what` with the number of the current line. Returns STATUS_INPUT. */
-int source_fail(const struct source *source, const char *what);
+/* Prints an error with the number of the current line, as printf does. Is STATUS_INPUT. */
+#define source_fail(source, ...) lines_fault(&(source)->lines, __VA_ARGS__)
 
 /* Finds the columns by a text of names with blanks in between. Status as columns_find. */
 int source_columns(struct source *source, const char *names, struct bed *bed);
@@ -61,15 +63,17 @@ int source_columns(struct source *source, const char *names, struct bed *bed);
  * columns_add, or STATUS_INPUT if the file ends too early. */
 int source_rows(struct source *source, int64_t rows, size_t more, struct bed *bed);
 
-/* Skips lines. FOUND_PART: the file has fewer. */
-int source_skip(struct source *source, int64_t rows, enum found *found, char *lack);
+/* Skips lines. FOUND_PART: the file has fewer. what: names them in messages. A line that begins with `stop` is an
+ * error; NULL: none is. */
+int source_skip(struct source *source, int64_t rows, const char *what, const char *stop);
 
 /* Changes FOUND_FRAME to FOUND_PART if the last line has no end of line: a number may be cut off. For formats that only
  * programs write. */
-void source_skip_end(const struct source *source, enum found *found, char *lack);
+void source_skip_end(struct source *source);
 
-/* Reads a text as a number of atoms. Status 0 or STATUS_INPUT. */
+/* Read a text, or the current line, as a number of atoms. Status 0 or STATUS_INPUT. */
 int source_count(const struct source *source, const char *text, int64_t *atoms);
+int source_count_line(const struct source *source, int64_t *atoms);
 
 /* Relative to the length of an edge: boxes that were turned and written in digits have traces of this size. */
 #define EDGE_TRACE 1e-9
