@@ -2,7 +2,7 @@
  *
  * The nearest triangle tells the side. If the nearest point lies on an edge or corner of several triangles, all of them
  * have to agree. If it lies on an edge of one triangle alone, the side is unknown. */
-#include "mesh/facing.h"
+#include "mesh/welded.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -11,7 +11,6 @@
 #include <strings.h>
 
 #include "cli/memory.h"
-#include "cli/message.h"
 #include "fibrad_mesh.h"
 #include "text/read_lines.h"
 

@@ -6,9 +6,7 @@
 #include "read/read.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/message.h"
 #include "read/read_format.h"

@@ -3,13 +3,10 @@
  * A file has a comment, a header of lines such as `100 atoms` and `0 2 xlo xhi`, and sections. The section
  * `Atoms # sphere` has the spheres. Positions are those within the box; image flags are not used. */
 #include <ctype.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 #include "text/read_number.h"
 

@@ -3,12 +3,10 @@
  * A dump is a sequence of frames, and a frame is a sequence of sections. Each section begins with a line `ITEM: NAME
  * ...`. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the columns, is the last section of a
  * frame. UNITS stands before the first frame only. */
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 
 static bool is_dump(const struct source *source) { return source_begins(source, "ITEM:"); }
@@ -159,11 +157,6 @@ static int read_box(struct source *source, char *marks, struct bed *bed) {
     return status;
 }
 
-static int read_atoms(struct source *source, int64_t atoms, const char *names, struct bed *bed) {
-    const int status = source_columns(source, names, bed);
-    return status ? status : source_rows(source, atoms, 0, bed);
-}
-
 static int read_dump(struct source *source, struct bed *bed) {
     int64_t atoms = 0;
     memcpy(bed->units, source->units, sizeof bed->units);
@@ -172,7 +165,10 @@ static int read_dump(struct source *source, struct bed *bed) {
         char *rest;
         int status = lines_next(&source->lines, &more);
         if (status) return status;
-        if ((rest = item(source, "ITEM: ATOMS"))) return read_atoms(source, atoms, rest, bed);
+        if ((rest = item(source, "ITEM: ATOMS"))) {
+            status = source_columns(source, rest, bed);
+            return status ? status : source_rows(source, atoms, 0, bed);
+        }
         if (item(source, "ITEM: NUMBER OF ATOMS")) status = skip_count(source, &atoms, &more);
         if (item(source, "ITEM: TIMESTEP")) status = read_timestep(source, bed);
         if ((rest = item(source, "ITEM: BOX BOUNDS"))) status = read_box(source, rest, bed);

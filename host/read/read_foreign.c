@@ -2,7 +2,6 @@
 #include <ctype.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 
 /* Files known by bytes at their beginning. */

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
-
 const char *source_begin(const struct source *source, size_t *size) {
     *size = source->lines.end - source->lines.next;
     return source->lines.buffer + source->lines.next;

@@ -1,15 +1,12 @@
 /* read_vtk.c - beds from VTK files, legacy or XML, with points and an array of radii. SPDX-License-Identifier: MIT
  *
  * The spheres of a .pvtp or .pvtu file are in other files, its pieces. */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
-#include "cli/message.h"
 #include "cli/spelling.h"
 #include "read/read_format.h"
 #include "read/vtk/vtk_grid.h"

@@ -11,7 +11,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 #include "text/read_number.h"
 

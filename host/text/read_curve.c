@@ -7,7 +7,6 @@
 #include <strings.h>
 
 #include "cli/memory.h"
-#include "cli/message.h"
 #include "text/header.h"
 #include "text/unit.h"
 

@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include "cli/interrupt.h"
-#include "cli/message.h"
 #include "cli/output.h"
 #include "text/read_number.h"
 

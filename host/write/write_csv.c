@@ -3,7 +3,6 @@
  *
  * Numbers below 0 are not spheres, and the column wall has their names: -1 is the surroundings, -2, -3 ... are walls,
  * and the next number is `beyond`. */
-#include <gsl/gsl_math.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>

@@ -2,14 +2,12 @@
  *
  * Four lines name version, title, ASCII or BINARY, and kind of the data set. Keywords follow, most of them with an
  * array. Binary arrays are big-endian. Arrays that are not wanted are skipped. */
-#include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
-#include "text/read_number.h"
 #include "read/vtk/vtk_grid.h"
 
 enum { NAME = 80 };
