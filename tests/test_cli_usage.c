@@ -320,7 +320,7 @@ TEST(blocked_pair) {
     SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "surface", "--nf", "610");
     ck_assert_double_eq_tol(value_of("F12") / exact, 1, 1e-3);
     SUCCEED("pair", "1", "1", "0", "--method", "surface", "--no-correction");
-    ck_assert_double_eq_tol(value_of("F12") / 0.0755868184216124, 1 - .0475649, 1e-6); /* docs/reproduction.md */
+    ck_assert_double_eq_tol(value_of("F12") / 0.0755868184216124, 1 - .0475649, 1e-6); /* docs/validation.md */
     SUCCEED("pair", "1", "1", "2", "--obstacle", "50,0,2,0.4");
     const double beside = value_of("F12");
     ck_assert_double_eq_tol(beside, pair("1", "1", "2"), 1e-9);

@@ -35,7 +35,7 @@ enum { FLIGHTS_SLOW = 24, FLIGHTS_SLOWEST = 48 };
 /* A standard error is unreliable if the concentration is larger than this. The square root of the concentration is the
  * relative standard error of the variance. If the variances of groups have a tail of index a < 1, the concentration
  * tends to 1 - a however many groups there are: 1/4 for flights along channels, 1/2 for flights in slabs
- * (docs/methods_heat.md section 12). Without such a tail it tends to 0. */
+ * (docs/methods.md section 24). Without such a tail it tends to 0. */
 #define SETTLED 0.03
 
 /* Growth of F_E over F_E from which flights count as endless, however large the standard error is. Flights of 100
@@ -146,7 +146,7 @@ static double square_gaps(const struct bed *bed, int axis, struct extent *extent
 }
 
 /* Finds the growth of F_E. A slab of width h across an axis of period P adds h^2/(P d) ln(L/h) to F_E along the other
- * two axes, with the mean diameter d and the longest flight L (docs/methods_heat.md section 12). */
+ * two axes, with the mean diameter d and the longest flight L (docs/methods.md section 24). */
 static int find_growth(const struct bed *bed, struct conduction *result) {
     if (bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0) return STATUS_OK;
     struct extent *extents = malloc(bed->n * sizeof *extents);

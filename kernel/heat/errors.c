@@ -21,7 +21,7 @@
  * temperature are wrong, all differences between found and given emissions are wrong by the same factor. Contacts pass
  * on errors of temperatures. What they pass on is the mean over solutions with random signs of all errors.
  *
- * docs/methods_heat.md section 9 has the terms in a table. */
+ * docs/methods.md section 21 has the terms in a table. */
 #include "heat/errors.h"
 #include "patches/subdivision.h"
 #include "scene/walls.h"
@@ -31,11 +31,11 @@
  *   B  settled beds, bench_heat                       S  500 equal spheres, bench_heat, docs/heat.md "Settings"
  *   W  16 scenes between walls, bench_walls           T  14 scenes between walls, bench_tolerance
  *   D  seven dilute beds                              F  cups and boxes against closed forms
- *   P  pairs of spheres of k* .01 to 1 against rings, docs/methods_heat.md section 13
- *   R  cubes, cups and mono2000 with insulated walls, docs/methods_heat.md section 7
+ *   P  pairs of spheres of k* .01 to 1 against rings, docs/accuracy.md "Powers of grey spheres"
+ *   R  cubes, cups and mono2000 with insulated walls, docs/accuracy.md
  *   M  small spheres beside triangles against the same beside planes, which are divided
  *   L  dim walls beside few spheres, tests/test_heat_walls.c residuals_are_estimated
- *   H  240 pairs of spheres and 400 spheres of poly2000, docs/methods_heat.md section 13 */
+ *   H  240 pairs of spheres and 400 spheres of poly2000, docs/accuracy.md */
 
 /* 1. beams and rays */
 #define BEAM_ERROR          FIBRAD_HEAT_BEAM_ERROR /* B W: even minus odd beams */

@@ -476,8 +476,8 @@ static void finish_contacts(fibrad_heat *heat) {
 
 /* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the
  * error would fall with the area of patches, and a third of the difference between both levels would be right. Near
- * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds: docs/methods_heat.md section
- * 6. */
+ * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds:
+ * docs/methods.md section 18. */
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
