@@ -17,6 +17,10 @@ void *memory_resized(void *array, size_t bytes, bool *good) {
     return array;
 }
 
+void *memory_grown(void *array, size_t n, size_t size, bool *good) {
+    return n & (n - 1) ? array : memory_resized(array, (n ? 2 * n : 1) * size, good);
+}
+
 /* Reads the number of a line `KEY: N kB` in a file of Linux's /proc [bytes]. Without such a line: `otherwise`. */
 static double proc_bytes(const char *path, const char *format, double otherwise) {
     char line[256];

@@ -9,6 +9,10 @@
 /* Gives an array another size. Returns the array, which is as it was if there is no memory; *good is false then. */
 void *memory_resized(void *array, size_t bytes, bool *good);
 
+/* Makes room for element n of an array that has n elements, and whose room doubles when n is a power of 2. As
+ * memory_resized. */
+void *memory_grown(void *array, size_t n, size_t size, bool *good);
+
 /* Bytes that this process may still allocate: those that the system has left, within the limit on address space.
  * INFINITY: neither is known. */
 double memory_left(void);

@@ -1,6 +1,7 @@
 /* edges.c - edges of triangles, and connected components with one winding. SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "mesh/welded.h"
 
@@ -8,25 +9,25 @@
 
 /* Edge k of triangle t, from corner k to the next corner. half = 3 t + k. */
 struct half_edge {
-    uint32_t low, high; /* vertices */
+    uint64_t ends; /* 2^32 times the lower vertex, and the higher one */
     uint32_t half;
 };
 
 static int compare_edges(const void *a, const void *b) {
     const struct half_edge *one = a, *other = b;
-    if (one->low != other->low) return one->low < other->low ? -1 : 1;
-    if (one->high != other->high) return one->high < other->high ? -1 : 1;
+    if (one->ends != other->ends) return one->ends < other->ends ? -1 : 1;
     return one->half < other->half ? -1 : one->half > other->half;
 }
 
 static struct half_edge edge_of(const struct surface *surface, uint32_t half) {
-    const uint32_t *corner = surface->corner[half / 3], a = corner[half % 3], b = corner[(half % 3 + 1) % 3];
-    return (struct half_edge){a < b ? a : b, a < b ? b : a, half};
+    const uint32_t *corner = surface->corner[half / 3];
+    const uint64_t a = corner[half % 3], b = corner[(half % 3 + 1) % 3];
+    return (struct half_edge){a < b ? a << 32 | b : b << 32 | a, half};
 }
 
 /* Whether a half edge goes from its lower vertex to its higher one. */
 static bool goes_up(const struct surface *surface, uint32_t half) {
-    return surface->corner[half / 3][half % 3] == edge_of(surface, half).low;
+    return surface->corner[half / 3][half % 3] == edge_of(surface, half).ends >> 32;
 }
 
 /* partner [3 n]: the other half of an edge of exactly two triangles, else NONE. */
@@ -37,7 +38,7 @@ static int find_partners(struct surface *surface, uint32_t *partner) {
     for (uint32_t half = 0; half < count; ++half) edge[half] = edge_of(surface, half);
     qsort(edge, (size_t)count, sizeof *edge, compare_edges);
     for (uint64_t k = 0, end; k < count; k = end) {
-        for (end = k + 1; end < count && edge[end].low == edge[k].low && edge[end].high == edge[k].high;) ++end;
+        for (end = k + 1; end < count && edge[end].ends == edge[k].ends;) ++end;
         for (uint64_t e = k; e < end; ++e) partner[edge[e].half] = NONE;
         surface->open += end - k == 1;
         surface->crowded += end - k > 2;
@@ -83,15 +84,11 @@ static void keep_majority(struct surface *surface, const struct component *compo
 }
 
 static int gather_all_components(struct surface *surface, const uint32_t *partner, bool *met) {
-    uint32_t room = 0;
+    bool good = true;
     for (uint32_t t = 0, listed = 0; t < surface->n; ++t) {
         if (met[t]) continue;
-        if (surface->components == room) {
-            room = room ? 2 * room : 16;
-            struct component *component = realloc(surface->component, room * sizeof *component);
-            if (!component) return message_memory();
-            surface->component = component;
-        }
+        surface->component = memory_grown(surface->component, surface->components, sizeof *surface->component, &good);
+        if (!good) return message_memory();
         struct component *component = &surface->component[surface->components++];
         *component = (struct component){.first = listed, .n = 1, .closed = true};
         met[t] = true;

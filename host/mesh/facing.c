@@ -2,7 +2,7 @@
  *
  * The nearest triangle tells the side. If the nearest point lies on an edge or corner of several triangles, all of them
  * have to agree. If it lies on an edge of one triangle alone, the side is unknown. */
-#include "mesh/facing.h"
+#include "mesh/welded.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,11 +31,8 @@ static struct ball ball_of(const struct surface *surface, uint32_t triangle) {
     struct ball ball = {.radius = 0};
     for (int k = 0; k < 3; ++k)
         for (int axis = 0; axis < 3; ++axis) ball.centre[axis] += surface_corner(surface, triangle, k)[axis] / 3;
-    for (int k = 0; k < 3; ++k) {
-        const double *c = surface_corner(surface, triangle, k);
-        ball.radius =
-            fmax(ball.radius, hypot(hypot(c[0] - ball.centre[0], c[1] - ball.centre[1]), c[2] - ball.centre[2]));
-    }
+    for (int k = 0; k < 3; ++k)
+        ball.radius = fmax(ball.radius, surface_distance(surface_corner(surface, triangle, k), ball.centre));
     return ball;
 }
 

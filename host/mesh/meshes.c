@@ -94,10 +94,10 @@ static int append(struct meshes *meshes) {
 }
 
 int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struct stl *stl, uint32_t wall) {
-    struct mesh *mesh = realloc(meshes->mesh, (meshes->count + (size_t)1) * sizeof *mesh);
-    if (!mesh) return message_memory();
-    meshes->mesh = mesh;
-    mesh = &mesh[meshes->count++];
+    bool good = true;
+    meshes->mesh = memory_grown(meshes->mesh, meshes->count, sizeof *meshes->mesh, &good);
+    if (!good) return message_memory();
+    struct mesh *mesh = &meshes->mesh[meshes->count++];
     *mesh = (struct mesh){.file = strdup(file->path),
                           .text = stl->text,
                           .sides = file->sides,

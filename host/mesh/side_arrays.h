@@ -3,7 +3,6 @@
 #ifndef SIDE_ARRAYS_H
 #define SIDE_ARRAYS_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
 #include "fibrad_mesh.h"

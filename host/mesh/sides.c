@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "cli/message.h"
-#include "mesh/facing.h"
 #include "mesh/meshes.h"
 
 static int inner_of(const struct meshes *meshes, const struct mesh *mesh, const struct component *component) {

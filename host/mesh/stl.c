@@ -11,7 +11,6 @@
 #include <strings.h>
 
 #include "cli/memory.h"
-#include "cli/message.h"
 #include "fibrad_mesh.h"
 #include "text/read_lines.h"
 
@@ -30,30 +29,25 @@ void stl_free(struct stl *stl) {
     *stl = (struct stl){0};
 }
 
-static bool stl_grow(struct stl *stl, uint32_t capacity) {
-    bool good = true;
-    stl->corner = memory_resized(stl->corner, capacity * sizeof *stl->corner, &good);
-    stl->place = memory_resized(stl->place, capacity * sizeof *stl->place, &good);
-    stl->solid = memory_resized(stl->solid, capacity * sizeof *stl->solid, &good);
-    if (good) stl->capacity = capacity;
-    return good;
-}
-
 /* Adds a triangle to the last solid. The caller fills in its corners. */
 static int add_triangle(struct stl *stl, const char *file, uint64_t place) {
     if (stl->n == FIBRAD_TRIANGLES_MAX)
         return message_at(STATUS_INPUT, file, 0, "more than %u triangles", FIBRAD_TRIANGLES_MAX);
-    if (stl->n == stl->capacity && !stl_grow(stl, stl->capacity ? 2 * stl->capacity : 1024)) return message_memory();
+    bool good = true;
+    stl->corner = memory_grown(stl->corner, stl->n, sizeof *stl->corner, &good);
+    stl->place = memory_grown(stl->place, stl->n, sizeof *stl->place, &good);
+    stl->solid = memory_grown(stl->solid, stl->n, sizeof *stl->solid, &good);
+    if (!good) return message_memory();
     stl->place[stl->n] = place;
     stl->solid[stl->n++] = stl->solids - 1;
     return STATUS_OK;
 }
 
 static int add_solid(struct stl *stl, const char *name) {
-    char(*names)[SOLID_NAME] = realloc(stl->name, (stl->solids + (size_t)1) * sizeof *names);
-    if (!names) return message_memory();
-    stl->name = names;
-    snprintf(names[stl->solids++], SOLID_NAME, "%.*s", SOLID_NAME - 1, name);
+    bool good = true;
+    stl->name = memory_grown(stl->name, stl->solids, sizeof *stl->name, &good);
+    if (!good) return message_memory();
+    snprintf(stl->name[stl->solids++], SOLID_NAME, "%.*s", SOLID_NAME - 1, name);
     return STATUS_OK;
 }
 
@@ -101,14 +95,12 @@ static const struct {
 enum { WORDS = sizeof words / sizeof *words };
 
 static int read_corner(const struct lines *lines, const struct fields *fields, double corner[3]) {
-    if (fields->n != 4)
-        return message_at(STATUS_INPUT, lines->name, lines->number, "a vertex has three coordinates, not %zu",
-                          fields->n - 1);
+    if (fields->n != 4) return lines_fault(lines, "a vertex has three coordinates, not %zu", fields->n - 1);
     for (size_t axis = 0; axis < 3; ++axis) {
         const int status = lines_number(lines, "the coordinate", fields->at[axis + 1], &corner[axis]);
         if (status) return status;
         if (fabs(corner[axis]) > FIBRAD_LENGTH_MAX)
-            return message_at(STATUS_INPUT, lines->name, lines->number, "the coordinate %g is too large", corner[axis]);
+            return lines_fault(lines, "the coordinate %g is too large", corner[axis]);
     }
     return STATUS_OK;
 }
@@ -137,8 +129,7 @@ static int read_line(struct stl *stl, const struct lines *lines, const struct fi
             return read_corner(lines, fields, stl->corner[stl->n - 1][before - CORNER]);
         return STATUS_OK;
     }
-    return message_at(STATUS_INPUT, lines->name, lines->number,
-                      known ? "'%.40s' is out of place" : "'%.40s' is no word of an STL file", first);
+    return lines_fault(lines, known ? "'%.40s' is out of place" : "'%.40s' is no word of an STL file", first);
 }
 
 static int read_text(struct stl *stl, struct lines *lines) {
@@ -150,8 +141,7 @@ static int read_text(struct stl *stl, struct lines *lines) {
         status = fields_split_blanks(&fields, lines->text);
         if (!status && fields.n > 0) status = read_line(stl, lines, &fields, &state);
     }
-    if (!status && (state != OUTSIDE || lines->truncated))
-        status = message_at(STATUS_INPUT, lines->name, lines->number, "the file ends within a solid");
+    if (!status && (state != OUTSIDE || lines->truncated)) status = lines_fault(lines, "the file ends within a solid");
     free(fields.at);
     return status;
 }

@@ -9,7 +9,7 @@ enum { SOLID_NAME = 32 };
 
 /* Triangles in the order of the file. Normals are not read. */
 struct stl {
-    uint32_t n, capacity;
+    uint32_t n;
     double (*corner)[3][3]; /* [n] */
     uint64_t *place;        /* [n] text: the line of `facet`; binary: the number of the triangle from 0 */
     uint32_t *solid;        /* [n] number of the solid from 0 */

@@ -98,13 +98,14 @@ static uint32_t weld_point(struct surface *surface, struct table *table, const d
     return surface->vertices++;
 }
 
+double surface_distance(const double a[3], const double b[3]) {
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
 static double mean_edge(const struct stl *stl, double scale) {
     double sum = 0;
     for (uint32_t t = 0; t < stl->n; ++t)
-        for (int k = 0; k < 3; ++k) {
-            const double *a = stl->corner[t][k], *b = stl->corner[t][(k + 1) % 3];
-            sum += hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]) * scale / 3;
-        }
+        for (int k = 0; k < 3; ++k) sum += surface_distance(stl->corner[t][k], stl->corner[t][(k + 1) % 3]) * scale / 3;
     return sum / stl->n;
 }
 
@@ -122,18 +123,12 @@ static int weld_corners(struct surface *surface, const struct stl *stl, double s
     return status;
 }
 
-static void swap_larger(uint64_t *a, uint64_t *b) {
-    const uint64_t larger = *a > *b ? *a : *b;
-    *a = *a > *b ? *b : *a;
-    *b = larger;
-}
-
 /* The corners in ascending order. */
 static void sorted_corners(const uint32_t corner[3], uint64_t key[3]) {
-    for (int k = 0; k < 3; ++k) key[k] = corner[k];
-    swap_larger(&key[0], &key[1]);
-    swap_larger(&key[1], &key[2]);
-    swap_larger(&key[0], &key[1]);
+    const uint64_t a = corner[0], b = corner[1], c = corner[2];
+    key[0] = a < b ? (a < c ? a : c) : b < c ? b : c;
+    key[2] = a > b ? (a > c ? a : c) : b > c ? b : c;
+    key[1] = a + b + c - key[0] - key[2];
 }
 
 /* Whether a triangle with these corners, of any winding, has been kept. If not, lists it as triangle n. */
@@ -154,14 +149,11 @@ static int keep_triangles(struct surface *surface, const struct stl *stl) {
     const int status = table_open(&table, stl->n);
     for (uint32_t t = 0; t < stl->n && !status; ++t) {
         const uint32_t corner[3] = {surface->corner[t][0], surface->corner[t][1], surface->corner[t][2]};
-        if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
-            ++surface->flat;
-            continue;
-        }
-        if (is_kept(surface, &table, corner)) {
-            ++surface->twice;
-            continue;
-        }
+        const bool flat = corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
+        const bool twice = !flat && is_kept(surface, &table, corner);
+        surface->flat += flat;
+        surface->twice += twice;
+        if (flat || twice) continue;
         memcpy(surface->corner[surface->n], corner, sizeof corner);
         surface->place[surface->n] = stl->place[t];
         surface->number[surface->n] = t;
@@ -193,10 +185,9 @@ double surface_area(const struct surface *surface, uint32_t triangle) {
 /* Whether a triangle of three different corners has no area. */
 static bool is_flat(const struct surface *surface, uint32_t triangle) {
     double longest = 0;
-    for (int k = 0; k < 3; ++k) {
-        const double *a = surface_corner(surface, triangle, k), *b = surface_corner(surface, triangle, (k + 1) % 3);
-        longest = fmax(longest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
-    }
+    for (int k = 0; k < 3; ++k)
+        longest = fmax(longest, surface_distance(surface_corner(surface, triangle, k),
+                                                 surface_corner(surface, triangle, (k + 1) % 3)));
     return 2 * surface_area(surface, triangle) <= FLAT * longest * longest;
 }
 

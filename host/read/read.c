@@ -6,9 +6,7 @@
 #include "read/read.h"
 
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/message.h"
 #include "read/read_format.h"
@@ -55,8 +53,7 @@ static bool wants_frame(const struct reader *r) {
 /* Whether only blank lines follow. If a gzip file was cut off, this is unknown: *end is false. */
 static int at_end(struct lines *lines, bool *end) {
     bool more;
-    int status;
-    while (!(status = lines_next(lines, &more)) && more && lines_blank(lines)) continue;
+    const int status = lines_next_text(lines, &more);
     *end = !status && !more && !lines->truncated;
     if (!status && more) lines_hold(lines);
     return status;
@@ -64,21 +61,15 @@ static int at_end(struct lines *lines, bool *end) {
 
 /* Reports, at the end of the file, a missing or incomplete frame. An incomplete frame behind wanted ones is a warning.
  */
-static int report_end_of_file(const struct reader *r, enum found found, const char *lack) {
+static int report_end_of_file(const struct reader *r) {
     const struct source *source = &r->source;
-    const bool part = found == FOUND_PART || source->lines.truncated;
-    if (part && r->found) {
-        message_at(STATUS_OK, source->lines.name, 0, "warning: frame %" PRId64 " is left out: %s", r->frame,
-                   source->lines.truncated ? "the gzip file is cut off" : lack);
-        return STATUS_OK;
-    }
-    if (part && r->frame > 0) {
-        char what[LACK_MAX + 60];
-        snprintf(what, sizeof what, "%s; the last whole frame is %" PRId64,
-                 source->lines.truncated ? "the gzip file is cut off" : lack, r->frame - 1);
-        return source_fail(source, what);
-    }
-    if (part) return source_ends(source, lack);
+    const bool part = source->found == FOUND_PART || source->lines.truncated;
+    const char *why = source->lines.truncated ? "the gzip file is cut off" : source->lack;
+    if (part && r->found)
+        return message_at(STATUS_OK, source->lines.name, 0, "warning: frame %" PRId64 " is left out: %s", r->frame,
+                          why);
+    if (part && r->frame > 0) return source_fail(source, "%s; the last whole frame is %" PRId64, why, r->frame - 1);
+    if (part) return source_fail(source, "%s", why);
     if (r->found) return STATUS_OK;
     return message_at(STATUS_INPUT, source->lines.name, 0, "there is no frame %" PRId64 "; the last is %" PRId64,
                       source->options.frames.begin, r->frame - 1);
@@ -88,13 +79,11 @@ static int report_end_of_file(const struct reader *r, enum found found, const ch
 static int find_frame(struct reader *r, bool *more) {
     struct source *source = &r->source;
     for (*more = false; wants_last(r) || r->frame < source->options.frames.end; ++r->frame) {
-        enum found found;
-        char lack[LACK_MAX] = "";
         bool end = true;
         const bool wanted = wants_frame(r);
         if (wanted) lines_keep(&source->lines);
-        int status = r->format->skip(source, &found, lack);
-        if (!status && found != FOUND_FRAME) return report_end_of_file(r, found, lack);
+        int status = r->format->skip(source);
+        if (!status && source->found != FOUND_FRAME) return report_end_of_file(r);
         if (!status && wants_last(r)) status = at_end(&source->lines, &end);
         if (status) return status;
         if (wanted && end) {
@@ -111,7 +100,8 @@ static int find_frame(struct reader *r, bool *more) {
 static int find_only(struct reader *r, bool *more) {
     *more = r->frame == 0 && wants_frame(r);
     r->frame += !*more && r->frame == 0;
-    return *more || r->found ? STATUS_OK : report_end_of_file(r, FOUND_END, "");
+    r->source.found = FOUND_END;
+    return *more || r->found ? STATUS_OK : report_end_of_file(r);
 }
 
 static int read_frame(struct reader *r, struct bed *bed) {
@@ -137,7 +127,9 @@ int reader_next(struct reader *r, struct bed *bed, bool *more) {
             return STATUS_OK;
         }
         if (r->done && !r->filled && !r->source.options.series)
-            return message_at(STATUS_INPUT, name, 0, "%s", read_options_none(&r->source.options));
+            return message_at(STATUS_INPUT, name, 0,
+                              r->source.options.rules > 0 ? "--only and --skip leave no spheres of the file"
+                                                          : "there are no spheres in the file");
         if (*more) message_at(STATUS_OK, name, 0, "warning: frame %" PRId64 " is empty and is left out", bed->frame);
     }
     return STATUS_OK;

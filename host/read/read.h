@@ -3,8 +3,6 @@
 #define READ_H
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include "bed/bed.h"
 #include "read/read_options.h"

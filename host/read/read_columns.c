@@ -1,5 +1,5 @@
 /* read_columns.c - rows of named columns become spheres; shared by all readers of text. SPDX-License-Identifier: MIT */
-#include "read/read_columns.h"
+#include "read/read_format.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,7 +9,6 @@
 
 #include "bed/units.h"
 #include "cli/memory.h"
-#include "cli/message.h"
 #include "cli/spelling.h"
 #include "text/read_number.h"
 #include "text/text.h"
@@ -29,23 +28,18 @@ const struct column_name *read_options_name(const struct read_options *options, 
     return NULL;
 }
 
-const char *read_options_none(const struct read_options *options) {
-    return options->rules > 0 ? "--only and --skip leave no spheres of the file" : "there are no spheres in the file";
-}
-
 /* Finds a column by name. If there are several, it is the first one, and columns_add checks that all are equal.
- * *column: names->n if there is none. */
-static int find(struct columns *columns, size_t *column, const struct fields *names, const char *wanted,
-                compare_names *compare) {
-    *column = names->n;
-    for (size_t k = 0; k < names->n; ++k) {
-        if (compare(names->at[k], wanted) != 0) continue;
-        if (*column == names->n) {
+ * *column: columns->width if there is none. */
+static int find(struct columns *columns, size_t *column, const char *wanted, compare_names *compare) {
+    *column = columns->width;
+    for (size_t k = 0; k < columns->width; ++k) {
+        if (compare(columns->header->at[k], wanted) != 0) continue;
+        if (*column == columns->width) {
             *column = k;
             continue;
         }
         bool good = true;
-        columns->twin = memory_resized(columns->twin, (columns->twins + 1) * sizeof *columns->twin, &good);
+        columns->twin = memory_grown(columns->twin, columns->twins, sizeof *columns->twin, &good);
         if (!good) return message_memory();
         columns->twin[columns->twins++] = (struct twin){*column, k, wanted};
     }
@@ -54,143 +48,133 @@ static int find(struct columns *columns, size_t *column, const struct fields *na
 
 /* Finds a column by the first of several names that the header has. The names end with NULL. Columns of options->name
  * go before all others, names in the same case before names in another case. *which: index of the name. *column:
- * names->n if there is none. */
-static int find_any(struct columns *columns, size_t *column, int *which, const struct fields *names,
-                    const struct read_options *options, const char *const wanted[]) {
+ * columns->width if there is none. */
+static int find_any(struct source *source, size_t *column, int *which, const char *const wanted[]) {
     compare_names *const compare[] = {strcmp, strcasecmp};
+    struct columns *columns = &source->columns;
     for (*which = 0; wanted[*which]; ++*which) {
-        const struct column_name *name = read_options_name(options, wanted[*which], true);
+        const struct column_name *name = read_options_name(&source->options, wanted[*which], true);
         if (!name) continue;
-        *column = columns->named[name - options->name];
+        *column = columns->named[name - source->options.name];
         return STATUS_OK;
     }
     for (int k = 0; k < 2; ++k)
         for (*which = 0; wanted[*which]; ++*which) {
-            const int status = find(columns, column, names, wanted[*which], compare[k]);
-            if (status || *column != names->n) return status;
+            const int status = find(columns, column, wanted[*which], compare[k]);
+            if (status || *column != columns->width) return status;
         }
     return STATUS_OK;
 }
 
-static int column_missing(const struct lines *lines, const struct fields *names, const char *wanted) {
+static int column_missing(const struct source *source, const char *wanted) {
     char list[NAMES_LISTED], hint[HINT_ROOM], table[HINT_ROOM];
-    const char *const *known = (const char *const *)names->at;
-    return message_at(STATUS_INPUT, lines->name, lines->number, "the header names no column %.60s%s there are %s%s",
-                      wanted, name_hint(hint, "", wanted, strlen(wanted), known, names->n),
-                      names_list(list, known, names->n), table_hint(table, "", wanted));
+    const char *const *known = (const char *const *)source->columns.header->at;
+    const size_t n = source->columns.width;
+    return source_fail(source, "the header names no column %.60s%s there are %s%s", wanted,
+                       name_hint(hint, "", wanted, strlen(wanted), known, n), names_list(list, known, n),
+                       table_hint(table, "", wanted));
 }
 
 /* Finds a column by a name that may have its unit behind it. says: the name says the unit of a column whose header has
  * none. */
-static int find_with_unit(struct columns *columns, const struct lines *lines, const struct fields *names,
-                          const char *wanted, bool says, size_t *column) {
-    const int status = find(columns, column, names, wanted, strcmp);
+static int find_with_unit(struct source *source, const char *wanted, bool says, size_t *column) {
+    struct columns *columns = &source->columns;
+    const int status = find(columns, column, wanted, strcmp);
     const char *unit;
     size_t bare, length;
-    if (status || *column < names->n) return status;
+    if (status || *column < columns->width) return status;
     const bool has = unit_behind(wanted, &bare, &unit, &length) && length > 0 && length < UNIT_LENGTH;
-    for (size_t c = 0; has && c < names->n && *column == names->n; ++c) {
-        if (strlen(names->at[c]) != bare || memcmp(names->at[c], wanted, bare) != 0) continue;
+    for (size_t c = 0; has && c < columns->width && *column == columns->width; ++c) {
+        const char *name = columns->header->at[c];
+        if (strlen(name) != bare || memcmp(name, wanted, bare) != 0) continue;
         if (says && !*columns->unit[c]) memcpy(columns->unit[c], unit, length);
         if (strlen(columns->unit[c]) == length && memcmp(columns->unit[c], unit, length) == 0) *column = c;
     }
-    return *column == names->n ? column_missing(lines, names, wanted) : STATUS_OK;
+    return *column == columns->width ? column_missing(source, wanted) : STATUS_OK;
 }
 
-static int find_radius(struct columns *columns, const struct lines *lines, const struct fields *names,
-                       const struct read_options *options) {
+static int find_radius(struct source *source) {
     static const char *const radius[] = {"r", "radius", "diameter", "d", NULL};
     int which;
-    if (options->no_radius) return STATUS_OK;
-    const int status = find_any(columns, &columns->radius, &which, names, options, radius);
-    if (!status && columns->radius == names->n)
-        return column_missing(lines, names, "r, radius, d or diameter; --radius or --columns r=NAME gives radii");
-    columns->radius_unit = which >= 2 ? 0.5 : 1;
+    if (source->options.no_radius) return STATUS_OK;
+    const int status = find_any(source, &source->columns.radius, &which, radius);
+    if (!status && source->columns.radius == source->columns.width)
+        return column_missing(source, "r, radius, d or diameter; --radius or --columns r=NAME gives radii");
+    source->columns.radius_unit = which >= 2 ? 0.5 : 1;
     return status;
-}
-
-static void columns_free_kept(struct columns *columns) {
-    free(columns->kept);
-    free(columns->text);
-    free(columns->kept_names);
-    columns->kept = NULL, columns->text = NULL, columns->kept_names = NULL;
 }
 
 void columns_free(struct columns *columns) {
-    free(columns->extra);
+    free(columns->wanted);
     free(columns->factor);
     free(columns->named);
-    free(columns->ruled);
     free(columns->twin);
     free(columns->unit);
-    columns_free_kept(columns);
+    free(columns->kept);
+    free(columns->text);
+    free(columns->kept_names);
 }
 
 /* Begins to look for columns: none has been found. */
-static int columns_begin(struct columns *columns, const struct fields *names, char *const *units,
-                         const struct read_options *options) {
-    columns->width = names->n;
-    columns->twins = 0;
+static int columns_begin(struct source *source, const struct fields *names, char *const *units) {
+    const struct read_options *options = &source->options;
+    struct columns *c = &source->columns;
+    size_t room = 1;
     bool good = true;
-    columns->extra = memory_resized(columns->extra, (options->extras + 1) * sizeof *columns->extra, &good);
-    columns->factor = memory_resized(columns->factor, (options->extras + 1) * sizeof *columns->factor, &good);
-    columns->named = memory_resized(columns->named, (options->names + 1) * sizeof *columns->named, &good);
-    columns->ruled = memory_resized(columns->ruled, (options->rules + 1) * sizeof *columns->ruled, &good);
-    columns->unit = memory_resized(columns->unit, (names->n + 1) * sizeof *columns->unit, &good);
+    for (size_t k = 0; k < names->n; ++k) room += strlen(names->at[k]) + 1;
+    c->header = names;
+    c->width = names->n;
+    c->twins = c->keeps = 0;
+    c->wanted = memory_resized(c->wanted, (options->extras + options->rules + 1) * sizeof *c->wanted, &good);
+    c->factor = memory_resized(c->factor, (options->extras + 1) * sizeof *c->factor, &good);
+    c->named = memory_resized(c->named, (options->names + 1) * sizeof *c->named, &good);
+    c->unit = memory_resized(c->unit, (names->n + 1) * sizeof *c->unit, &good);
+    c->kept = memory_resized(c->kept, (names->n + 1) * sizeof *c->kept, &good);
+    c->text = memory_resized(c->text, (names->n + 1) * sizeof *c->text, &good);
+    c->kept_names = memory_resized(c->kept_names, room, &good);
     if (!good) return message_memory();
-    memset(columns->unit, 0, names->n * sizeof *columns->unit);
-    for (size_t c = 0; units && c < names->n; ++c) snprintf(columns->unit[c], UNIT_LENGTH, "%s", units[c]);
+    memset(c->unit, 0, names->n * sizeof *c->unit);
+    for (size_t k = 0; units && k < names->n; ++k) snprintf(c->unit[k], UNIT_LENGTH, "%s", units[k]);
     return STATUS_OK;
 }
 
+const char *read_options_wanted(const struct read_options *options, size_t k) {
+    return k < options->extras ? options->extra[k] : options->rule[k - options->extras].column;
+}
+
 /* Finds the columns that the user has named: those of options->name, the further columns, and those of the rules. */
-static int find_given(struct columns *columns, const struct lines *lines, const struct fields *names,
-                      const struct read_options *options) {
+static int find_given(struct source *source) {
+    const struct read_options *options = &source->options;
+    struct columns *columns = &source->columns;
     int status = STATUS_OK;
     for (size_t k = 0; k < options->names && !status; ++k)
-        status = find_with_unit(columns, lines, names, options->name[k].name, true, &columns->named[k]);
+        status = find_with_unit(source, options->name[k].name, true, &columns->named[k]);
     for (size_t k = 0; k < options->extras + options->rules && !status; ++k) {
-        const bool extra = k < options->extras;
-        const char *wanted = extra ? options->extra[k] : options->rule[k - options->extras].column;
-        size_t *column = extra ? &columns->extra[k] : &columns->ruled[k - options->extras];
+        const char *wanted = read_options_wanted(options, k);
         const struct column_name *name = read_options_name(options, wanted, false);
         if (name)
-            *column = columns->named[name - options->name];
+            columns->wanted[k] = columns->named[name - options->name];
         else
-            status = find_with_unit(columns, lines, names, wanted, false, column);
+            status = find_with_unit(source, wanted, false, &columns->wanted[k]);
     }
     return status;
 }
 
-/* Whether write_dump writes a column of this name of its own. */
-static bool is_own(const char *name) {
-    static const char *const own[] = {"id", "x", "y", "z", "radius", "T_K", "q_W"};
-    for (size_t k = 0; k < sizeof own / sizeof *own; ++k)
-        if (strcmp(name, own[k]) == 0) return true;
-    return false;
-}
-
 /* Finds the columns that are kept as text: all but coordinates, radii, ids and those that write_dump writes. */
-static int find_kept(struct columns *columns, const struct fields *names, const struct read_options *options) {
-    size_t room = 1;
-    columns->keeps = 0;
-    if (!options->keep) return STATUS_OK;
-    for (size_t k = 0; k < names->n; ++k) room += strlen(names->at[k]) + 1;
-    columns_free_kept(columns);
-    columns->kept = malloc((names->n + 1) * sizeof *columns->kept);
-    columns->text = malloc((names->n + 1) * sizeof *columns->text);
-    columns->kept_names = calloc(room, 1);
-    if (!columns->kept || !columns->text || !columns->kept_names) return message_memory();
-    for (size_t k = 0; k < names->n; ++k) {
-        const bool used = k == columns->coordinate[0] || k == columns->coordinate[1] || k == columns->coordinate[2] ||
-                          k == columns->id || (!options->no_radius && k == columns->radius);
-        if (used || is_own(names->at[k]) || !*names->at[k]) continue;
-        char *to = columns->kept_names + strlen(columns->kept_names);
+static void find_kept(struct columns *columns, bool no_radius) {
+    static const char *const own[] = {"", "id", "x", "y", "z", "radius", "T_K", "q_W"};
+    char *to = columns->kept_names;
+    for (size_t k = 0; k < columns->width; ++k) {
+        const char *name = columns->header->at[k];
+        bool used = k == columns->coordinate[0] || k == columns->coordinate[1] || k == columns->coordinate[2] ||
+                    k == columns->id || (!no_radius && k == columns->radius);
+        for (size_t c = 0; c < sizeof own / sizeof *own; ++c) used = used || strcmp(name, own[c]) == 0;
+        if (used) continue;
         if (columns->keeps > 0) *to++ = ' ';
-        for (const char *c = names->at[k]; *c; ++c) *to++ = (char)(*c == ' ' || *c == '\t' ? '_' : *c);
+        for (; *name; ++name) *to++ = (char)(*name == ' ' || *name == '\t' ? '_' : *name);
         columns->kept[columns->keeps++] = k;
     }
-    return STATUS_OK;
+    *to = 0;
 }
 
 static const char *const coordinate[3][7] = {{"x", "xu", "xs", "xsu", "Points:0", "Points_0", NULL},
@@ -207,87 +191,74 @@ bool columns_named(const struct fields *names) {
 }
 
 /* Finds the unit of lengths, which must be the same in all columns of lengths and in the file. */
-static int find_unit(const struct columns *columns, const struct lines *lines, const struct fields *names,
-                     const struct read_options *options, struct bed *bed) {
-    const char *unit = columns->unit[columns->coordinate[0]];
-    const size_t lengths[] = {columns->coordinate[1], columns->coordinate[2],
-                              options->no_radius ? columns->coordinate[0] : columns->radius};
+static int find_unit(const struct source *source, struct bed *bed) {
+    const struct columns *columns = &source->columns;
+    const size_t first = columns->coordinate[0], lengths[] = {columns->coordinate[1], columns->coordinate[2],
+                                                              source->options.no_radius ? first : columns->radius};
+    const char *unit = columns->unit[first];
     double metres, of_file;
     for (int k = 0; k < 3; ++k)
         if (strcmp(columns->unit[lengths[k]], unit) != 0)
-            return message_at(STATUS_INPUT, lines->name, lines->number,
-                              "lengths of more than one unit: %.40s in [%.10s], %.40s in [%.10s]",
-                              names->at[columns->coordinate[0]], unit, names->at[lengths[k]],
-                              columns->unit[lengths[k]]);
+            return source_fail(source, "lengths of more than one unit: %.40s in [%.10s], %.40s in [%.10s]",
+                               columns->header->at[first], unit, columns->header->at[lengths[k]],
+                               columns->unit[lengths[k]]);
     if (bed->units[0] && *unit && unit_of_length(unit, &metres) && unit_of_length(bed->units, &of_file) &&
         metres != of_file)
-        return message_at(STATUS_INPUT, lines->name, lines->number,
-                          "--columns says that lengths are in [%.10s], but the units of the file are %.20s", unit,
-                          bed->units);
+        return source_fail(source, "--columns says that lengths are in [%.10s], but the units of the file are %.20s",
+                           unit, bed->units);
     if (*unit && !bed->units[0]) snprintf(bed->units, sizeof bed->units, "%s", unit);
     return STATUS_OK;
 }
 
-int columns_factor(const struct lines *lines, const struct read_options *options, size_t k, const char *unit,
-                   const char *lengths, double *factor) {
+int columns_factor(const struct source *source, size_t k, const char *unit, const char *lengths, double *factor) {
+    const struct read_options *options = &source->options;
     const char *expected = options->unit ? options->unit[k] : NULL;
     if (expected && strcmp(expected, UNIT_OF_LENGTH) == 0) expected = *lengths ? lengths : NULL;
     *factor = 1;
     if (options->any_unit || unit_none(unit) || (expected && strcmp(unit, expected) == 0)) return STATUS_OK;
     if (expected && unit_factor(unit, expected, factor)) return STATUS_OK;
-    const bool temperature = expected && (unit_is(expected, "K") || unit_is(expected, "C"));
-    return message_at(STATUS_INPUT, lines->name, lines->number,
-                      "the column %.40s is in [%.20s], but is taken as [%.20s]%s", options->extra[k], unit,
-                      expected ? expected : "-", temperature ? "; see --temperature-unit" : "");
+    return source_fail(source, "the column %.40s is in [%.20s], but is taken as [%.20s]%s", options->extra[k], unit,
+                       expected ? expected : "-",
+                       expected && unit_temperature(expected) ? "; see --temperature-unit" : "");
 }
 
-static int find_factors(struct columns *columns, const struct lines *lines, const struct read_options *options) {
-    int status = STATUS_OK;
-    for (size_t k = 0; k < options->extras && !status; ++k)
-        status = columns_factor(lines, options, k, columns->unit[columns->extra[k]],
-                                columns->unit[columns->coordinate[0]], &columns->factor[k]);
-    return status;
-}
-
-int columns_find(struct columns *columns, const struct lines *lines, const struct fields *names, char *const *units,
-                 const struct read_options *options, struct bed *bed) {
+int columns_find(struct source *source, const struct fields *names, char *const *units, struct bed *bed) {
     static const char *const id[] = {"id", NULL};
-    int which, status = columns_begin(columns, names, units, options);
-    if (!status) status = find_given(columns, lines, names, options);
+    struct columns *columns = &source->columns;
+    int which, status = columns_begin(source, names, units);
+    if (!status) status = find_given(source);
     for (int axis = 0; axis < 3 && !status; ++axis) {
         size_t *column = &columns->coordinate[axis];
-        status = find_any(columns, column, &which, names, options, coordinate[axis]);
+        status = find_any(source, column, &which, coordinate[axis]);
         if (status) return status;
-        if (*column == names->n) return column_missing(lines, names, coordinate[axis][0]);
+        if (*column == names->n) return column_missing(source, coordinate[axis][0]);
         columns->scaled[axis] = which == 2 || which == 3;
         if (columns->scaled[axis] && bed->low[axis] == bed->high[axis])
-            return message_at(STATUS_INPUT, lines->name, lines->number,
-                              "the scaled coordinate %s needs a box, and no box is given before", names->at[*column]);
+            return source_fail(source, "the scaled coordinate %s needs a box, and no box is given before",
+                               names->at[*column]);
     }
-    if (!status) status = find_radius(columns, lines, names, options);
-    if (!status) status = find_any(columns, &columns->id, &which, names, options, id);
-    if (!status) status = find_kept(columns, names, options);
-    if (!status) status = find_factors(columns, lines, options);
-    return status ? status : find_unit(columns, lines, names, options, bed);
+    if (!status) status = find_radius(source);
+    if (!status) status = find_any(source, &columns->id, &which, id);
+    if (!status && source->options.keep) find_kept(columns, source->options.no_radius);
+    for (size_t k = 0; k < source->options.extras && !status; ++k)
+        status = columns_factor(source, k, columns->unit[columns->wanted[k]], columns->unit[columns->coordinate[0]],
+                                &columns->factor[k]);
+    return status ? status : find_unit(source, bed);
 }
 
 /* Reads a number of a row. */
-static int columns_number(struct columns *columns, const struct lines *lines, const char *what, char *text,
-                          double *value) {
-    return lines_decimal(lines, what, text, columns->commas ? &columns->mark : NULL, value);
+static int columns_number(struct source *source, const char *what, size_t column, double *value) {
+    struct columns *columns = &source->columns;
+    return lines_decimal(&source->lines, what, source->fields.at[column], columns->commas ? &columns->mark : NULL,
+                         value);
 }
 
-/* Whether a value is missing in a column that allows this. */
-static bool is_missing(const struct read_options *options, size_t k, const char *text) {
-    return options->some && options->some[k] && (*text == 0 || strcasecmp(text, "nan") == 0);
-}
-
-int columns_add_sphere(const struct lines *lines, const struct read_options *options, struct bed_sphere *sphere,
-                       struct bed *bed) {
-    if (options->no_radius)
+int columns_add_sphere(const struct source *source, struct bed_sphere *sphere, struct bed *bed) {
+    if (source->options.no_radius)
         sphere->r = NAN;
     else if (!(sphere->r > 0))
-        return message_at(STATUS_INPUT, lines->name, sphere->line, "the radius is %g; it must be above 0", sphere->r);
+        return message_at(STATUS_INPUT, source->lines.name, sphere->line, "the radius is %g; it must be above 0",
+                          sphere->r);
     return bed_add(bed, sphere);
 }
 
@@ -298,64 +269,64 @@ static bool same_value(const char *one, const char *other) {
 }
 
 /* Whether the rules allow a row. */
-static bool allowed(const struct columns *columns, const struct fields *row, const struct read_options *options) {
+static bool allowed(const struct source *source) {
+    const struct read_options *options = &source->options;
+    const size_t *ruled = source->columns.wanted + options->extras;
     for (size_t k = 0; k < options->rules; ++k)
-        if (same_value(row->at[columns->ruled[k]], options->rule[k].value) == options->rule[k].skip) return false;
+        if (same_value(source->fields.at[ruled[k]], options->rule[k].value) == options->rule[k].skip) return false;
     return true;
 }
 
 /* Refuses a row in which columns of one name differ. */
-static int check_twins(const struct columns *columns, const struct lines *lines, const struct fields *row) {
-    for (size_t k = 0; k < columns->twins; ++k) {
-        const struct twin *t = &columns->twin[k];
-        if (same_value(row->at[t->first], row->at[t->second])) continue;
-        return message_at(STATUS_INPUT, lines->name, lines->number,
-                          "columns %zu and %zu are both named %.40s, and differ: '%.40s' and '%.40s'", t->first + 1,
-                          t->second + 1, t->name, row->at[t->first], row->at[t->second]);
+static int check_twins(const struct source *source) {
+    for (size_t k = 0; k < source->columns.twins; ++k) {
+        const struct twin *t = &source->columns.twin[k];
+        const char *first = source->fields.at[t->first], *second = source->fields.at[t->second];
+        if (!same_value(first, second))
+            return source_fail(source, "columns %zu and %zu are both named %.40s, and differ: '%.40s' and '%.40s'",
+                               t->first + 1, t->second + 1, t->name, first, second);
     }
     return STATUS_OK;
 }
 
 /* Reads the further columns of the last sphere. */
-static int add_extras(struct columns *columns, const struct lines *lines, const struct fields *row,
-                      const struct read_options *options, struct bed *bed) {
+static int add_extras(struct source *source, struct bed *bed) {
+    const struct read_options *options = &source->options;
     for (size_t k = 0; k < options->extras; ++k) {
-        char *text = row->at[columns->extra[k]];
+        const char *text = source->fields.at[source->columns.wanted[k]];
         double *value = &bed->extra[(bed->n - 1) * options->extras + k];
         *value = NAN;
-        if (is_missing(options, k, text)) continue;
-        const int status = columns_number(columns, lines, options->extra[k], text, value);
+        if (options->some && options->some[k] && (*text == 0 || strcasecmp(text, "nan") == 0)) continue; /* missing */
+        const int status = columns_number(source, options->extra[k], source->columns.wanted[k], value);
         if (status) return status;
-        *value *= columns->factor[k];
-        if (isfinite(*value)) continue;
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is not finite in the expected unit",
-                          options->extra[k]);
+        *value *= source->columns.factor[k];
+        if (!isfinite(*value)) return source_fail(source, "%s is not finite in the expected unit", options->extra[k]);
     }
     return STATUS_OK;
 }
 
-int columns_add(struct columns *columns, const struct lines *lines, const struct fields *row,
-                const struct read_options *options, struct bed *bed) {
+int columns_add(struct source *source, struct bed *bed) {
     static const char *const axes[] = {"x", "y", "z"};
+    const struct fields *row = &source->fields;
+    struct columns *columns = &source->columns;
     if (row->n != columns->width)
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%zu fields where the header names %zu columns",
-                          row->n, columns->width);
-    if (!allowed(columns, row, options)) return STATUS_OK;
-    int status = check_twins(columns, lines, row);
+        return source_fail(source, "%zu fields where the header names %zu columns", row->n, columns->width);
+    if (!allowed(source)) return STATUS_OK;
+    int status = check_twins(source);
     double centre[3] = {0};
     for (int axis = 0; axis < 3 && !status; ++axis) {
-        status = columns_number(columns, lines, axes[axis], row->at[columns->coordinate[axis]], &centre[axis]);
+        status = columns_number(source, axes[axis], columns->coordinate[axis], &centre[axis]);
         if (columns->scaled[axis]) centre[axis] = bed->low[axis] + centre[axis] * (bed->high[axis] - bed->low[axis]);
     }
-    struct bed_sphere sphere = {.x = centre[0], .y = centre[1], .z = centre[2], .line = lines->number};
-    bed->ids = columns->id < columns->width && !options->positions;
-    if (!status && !options->no_radius)
-        status = columns_number(columns, lines, "the radius", row->at[columns->radius], &sphere.r);
+    struct bed_sphere sphere = {.x = centre[0], .y = centre[1], .z = centre[2], .line = source->lines.number};
+    bed->ids = columns->id < columns->width && !source->options.positions;
+    if (!status && !source->options.no_radius)
+        status = columns_number(source, "the radius", columns->radius, &sphere.r);
     sphere.r *= columns->radius_unit;
-    if (!status && bed->ids) status = lines_whole(lines, "the id", row->at[columns->id], &sphere.id);
+    if (!status && bed->ids) status = lines_whole(&source->lines, "the id", row->at[columns->id], &sphere.id);
     if (columns->keeps > 0) bed->kept_names = columns->kept_names;
-    if (!status) status = columns_add_sphere(lines, options, &sphere, bed);
-    if (!status) status = add_extras(columns, lines, row, options, bed);
+    if (!status) status = columns_add_sphere(source, &sphere, bed);
+    if (!status) status = add_extras(source, bed);
     for (size_t k = 0; k < columns->keeps; ++k) columns->text[k] = row->at[columns->kept[k]];
     return !status && columns->keeps > 0 ? bed_keep(bed, columns->text, columns->keeps) : status;
 }

@@ -3,13 +3,10 @@
  * A file has a comment, a header of lines such as `100 atoms` and `0 2 xlo xhi`, and sections. The section
  * `Atoms # sphere` has the spheres. Positions are those within the box; image flags are not used. */
 #include <ctype.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 #include "text/read_number.h"
 
@@ -141,8 +138,7 @@ static int guess_style(struct source *source, char *style) {
     char line[200];
     int n = 0, length;
     bool more;
-    int status;
-    while (!(status = lines_next(&source->lines, &more)) && more && lines_blank(&source->lines)) continue;
+    const int status = lines_next_text(&source->lines, &more);
     if (status || !more) return status;
     snprintf(line, sizeof line, "%.*s", (int)strcspn(source->lines.text, "#"), source->lines.text);
     for (const char *text = line; sscanf(text, "%*s%n", &length) != EOF; text += length) ++n;
@@ -162,8 +158,8 @@ static int find_style(struct source *source, const char *style, size_t *more, st
     *more = hybrid ? COLUMNS_MAX : IMAGE_FLAGS;
     while (k < sizeof styles / sizeof *styles && strcmp(styles[k].style, style) != 0) ++k;
     if (k == sizeof styles / sizeof *styles)
-        return message_at(
-            STATUS_INPUT, lines->name, lines->number,
+        return lines_fault(
+            lines,
             "this is a LAMMPS data file of style %.40s, whose columns are not known; columns of style sphere are known",
             style);
     if (source->options.no_radius || strstr(styles[k].columns, "diameter"))
@@ -171,23 +167,19 @@ static int find_style(struct source *source, const char *style, size_t *more, st
     if (hybrid)
         return source_fail(source, "this is a LAMMPS data file of style hybrid without its parts; write "
                                    "`Atoms # hybrid sphere` if columns are id type x y z diameter density ...");
-    return message_at(STATUS_INPUT, lines->name, lines->number,
-                      "this is a LAMMPS data file of style %s: it has no radii; --radius gives them", style);
+    return lines_fault(lines, "this is a LAMMPS data file of style %s: it has no radii; --radius gives them", style);
 }
 
 static int read_data(struct source *source, struct bed *bed) {
     size_t more;
     char style[80] = "";
     int64_t atoms = 0;
-    bool there = true;
+    bool there;
     int status = read_header(source, &atoms, style, bed);
     if (!status && !*style) status = guess_style(source, style);
     if (!status) status = find_style(source, style, &more, bed);
-    while (!status && !(status = lines_next(&source->lines, &there)) && there)
-        if (!lines_blank(&source->lines)) {
-            lines_hold(&source->lines);
-            break;
-        }
+    if (!status) status = lines_next_text(&source->lines, &there);
+    if (!status && there) lines_hold(&source->lines);
     if (!status) status = source_rows(source, atoms, more, bed);
     if (!status) source_warn_open(source);
     return status;

@@ -3,12 +3,10 @@
  * A dump is a sequence of frames, and a frame is a sequence of sections. Each section begins with a line `ITEM: NAME
  * ...`. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the columns, is the last section of a
  * frame. UNITS stands before the first frame only. */
-#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 
 static bool is_dump(const struct source *source) { return source_begins(source, "ITEM:"); }
@@ -28,29 +26,9 @@ static int section_line(struct source *source, bool *more) {
 
 /* ---- passing over ----------------------------------------------------------------------------------------------- */
 
-static int skip_atoms(struct source *source, int64_t atoms, bool *more, char *lack) {
-    for (int64_t k = 0; k < atoms; ++k) {
-        const int status = lines_next(&source->lines, more);
-        if (status) return status;
-        const bool next = *more && item(source, "ITEM:");
-        if (*more && !next) continue;
-        snprintf(lack, LACK_MAX, "the frame ends after %" PRId64 " atoms; %" PRId64 " were declared", k, atoms);
-        return next ? source_fail(source, lack) : STATUS_OK;
-    }
-    return STATUS_OK;
-}
-
 static int skip_count(struct source *source, int64_t *atoms, bool *more) {
-    char word[32];
     const int status = section_line(source, more);
-    if (status || !*more) return status;
-    return source_count(source, source_word(source, word, sizeof word), atoms);
-}
-
-static int skip_units(struct source *source, bool *more) {
-    const int status = section_line(source, more);
-    if (!status && *more) source_word(source, source->units, sizeof source->units);
-    return status;
+    return status || !*more ? status : source_count_line(source, atoms);
 }
 
 /* Skips the lines up to the next ITEM. */
@@ -64,28 +42,28 @@ static int skip_section(struct source *source, bool *more) {
     return status;
 }
 
-static int skip_dump(struct source *source, enum found *found, char *lack) {
+static int skip_dump(struct source *source) {
     int64_t atoms = -1;
     bool more, begun = false;
     int status;
-    *found = FOUND_END;
+    source->found = FOUND_END;
     while (!(status = lines_next(&source->lines, &more)) && more) {
         if (lines_blank(&source->lines)) continue;
         if (!item(source, "ITEM:"))
             return source_fail(source, "more atoms than declared, or a line that belongs to no section");
-        *found = FOUND_PART;
-        snprintf(lack, LACK_MAX, "the file ends within a frame");
+        source->found = FOUND_PART;
+        snprintf(source->lack, LACK_MAX, "the file ends within a frame");
         if (item(source, "ITEM: ATOMS")) {
             if (atoms < 0) return source_fail(source, "ITEM: ATOMS comes before ITEM: NUMBER OF ATOMS");
-            status = skip_atoms(source, atoms, &more, lack);
-            if (more) *found = FOUND_FRAME;
-            source_skip_end(source, found, lack);
+            status = source_skip(source, atoms, "atoms", "ITEM:");
+            source_skip_end(source);
             return status;
         }
         if (item(source, "ITEM: NUMBER OF ATOMS")) {
             status = skip_count(source, &atoms, &more);
         } else if (item(source, "ITEM: UNITS")) {
-            status = skip_units(source, &more);
+            status = section_line(source, &more);
+            if (!status && more) source_word(source, source->units, sizeof source->units);
         } else if (item(source, "ITEM: ENTRIES")) {
             return source_fail(source, "this is a LAMMPS dump of local values: it has no atoms");
         } else {
@@ -114,7 +92,7 @@ static int read_numbers(struct source *source, size_t n, const char *const names
     bool more;
     int status = section_line(source, &more);
     if (!status) status = fields_split_blanks(&source->fields, source->lines.text);
-    if (!status && source->fields.n != n) return source_fail(source, wanted);
+    if (!status && source->fields.n != n) return source_fail(source, "%s", wanted);
     for (size_t k = 0; k < n && !status; ++k)
         status = lines_number(&source->lines, names[k], source->fields.at[k], &value[k]);
     return status;
@@ -171,18 +149,12 @@ static int read_box(struct source *source, char *marks, struct bed *bed) {
     for (size_t axis = 0; axis < n; ++axis) {
         periodic[axis] = strcmp(mark[axis], "pp") == 0;
         if (!periodic[axis] && (strlen(mark[axis]) != 2 || strspn(mark[axis], "fsm") != 2))
-            return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "unknown boundary mark '%.40s'",
-                              mark[axis]);
+            return source_fail(source, "unknown boundary mark '%.40s'", mark[axis]);
     }
     if (unmarked) source_warn_open(source);
     if (edges) return read_edges(source, periodic, bed);
     for (int axis = 0; axis < 3 && !status; ++axis) status = read_bounds(source, axis, tilted, periodic[axis], bed);
     return status;
-}
-
-static int read_atoms(struct source *source, int64_t atoms, const char *names, struct bed *bed) {
-    const int status = source_columns(source, names, bed);
-    return status ? status : source_rows(source, atoms, 0, bed);
 }
 
 static int read_dump(struct source *source, struct bed *bed) {
@@ -193,7 +165,10 @@ static int read_dump(struct source *source, struct bed *bed) {
         char *rest;
         int status = lines_next(&source->lines, &more);
         if (status) return status;
-        if ((rest = item(source, "ITEM: ATOMS"))) return read_atoms(source, atoms, rest, bed);
+        if ((rest = item(source, "ITEM: ATOMS"))) {
+            status = source_columns(source, rest, bed);
+            return status ? status : source_rows(source, atoms, 0, bed);
+        }
         if (item(source, "ITEM: NUMBER OF ATOMS")) status = skip_count(source, &atoms, &more);
         if (item(source, "ITEM: TIMESTEP")) status = read_timestep(source, bed);
         if ((rest = item(source, "ITEM: BOX BOUNDS"))) status = read_box(source, rest, bed);

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
-
 const char *source_begin(const struct source *source, size_t *size) {
     *size = source->lines.end - source->lines.next;
     return source->lines.buffer + source->lines.next;
@@ -18,10 +16,6 @@ bool source_begins(const struct source *source, const char *text) {
     size_t size;
     const char *begin = source_begin(source, &size);
     return size >= strlen(text) && memcmp(begin, text, strlen(text)) == 0;
-}
-
-int source_fail(const struct source *source, const char *what) {
-    return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s", what);
 }
 
 char *source_word(const struct source *source, char *to, size_t room) {
@@ -36,7 +30,7 @@ char *source_word(const struct source *source, char *to, size_t room) {
 }
 
 int source_ends(const struct source *source, const char *lack) {
-    return source_fail(source, source->lines.truncated ? "the gzip file is cut off" : lack);
+    return source_fail(source, "%s", source->lines.truncated ? "the gzip file is cut off" : lack);
 }
 
 void source_warn_open(struct source *source) {
@@ -50,7 +44,7 @@ int source_columns(struct source *source, const char *names, struct bed *bed) {
     struct fields fields = {0};
     char *text = strdup(names);
     int status = text ? fields_split_blanks(&fields, text) : message_memory();
-    if (!status) status = columns_find(&source->columns, &source->lines, &fields, NULL, &source->options, bed);
+    if (!status) status = columns_find(source, &fields, NULL, bed);
     free(fields.at);
     free(text);
     return status;
@@ -62,8 +56,8 @@ int source_edges(const struct source *source, const char *what, const double edg
     for (int k = 0; k < 9; ++k) longest = fmax(longest, fabs(edge[k]));
     for (int k = 0; k < 9; ++k) {
         if (k % 4 == 0 || fabs(edge[k]) <= EDGE_TRACE * longest) continue;
-        return message_at(STATUS_INPUT, source->lines.name, source->lines.number,
-                          "%s; only boxes with right angles, whose edges lie along x, y and z, can be read", what);
+        return source_fail(source, "%s; only boxes with right angles, whose edges lie along x, y and z, can be read",
+                           what);
     }
     for (int axis = 0; axis < 3; ++axis) {
         const double length = edge[4 * axis];
@@ -84,34 +78,41 @@ int source_rows(struct source *source, int64_t rows, size_t more, struct bed *be
         if (!status && !there) return source_ends(source, "the file ends before the last of its spheres");
         if (!status) status = fields_split_blanks(fields, source->lines.text);
         if (fields->n > width && fields->n <= width + more) fields->n = width;
-        if (!status) status = columns_add(&source->columns, &source->lines, fields, &source->options, bed);
+        if (!status) status = columns_add(source, bed);
         if (status) return status;
     }
     return STATUS_OK;
 }
 
-int source_skip(struct source *source, int64_t rows, enum found *found, char *lack) {
-    *found = FOUND_FRAME;
+int source_skip(struct source *source, int64_t rows, const char *what, const char *stop) {
+    source->found = FOUND_FRAME;
     for (int64_t k = 0; k < rows; ++k) {
         bool there;
         const int status = lines_next(&source->lines, &there);
         if (status) return status;
-        if (there) continue;
-        *found = FOUND_PART;
-        snprintf(lack, LACK_MAX, "the frame ends after %" PRId64 " spheres; %" PRId64 " were declared", k, rows);
-        return STATUS_OK;
+        const bool stopped = there && stop && lines_begin(&source->lines, stop);
+        if (there && !stopped) continue;
+        source->found = FOUND_PART;
+        snprintf(source->lack, LACK_MAX, "the frame ends after %" PRId64 " %s; %" PRId64 " were declared", k, what,
+                 rows);
+        return stopped ? source_fail(source, "%s", source->lack) : STATUS_OK;
     }
     return STATUS_OK;
 }
 
-void source_skip_end(const struct source *source, enum found *found, char *lack) {
-    if (*found != FOUND_FRAME || source->lines.ended) return;
-    *found = FOUND_PART;
-    snprintf(lack, LACK_MAX, "the file ends within a line");
+void source_skip_end(struct source *source) {
+    if (source->found != FOUND_FRAME || source->lines.ended) return;
+    source->found = FOUND_PART;
+    snprintf(source->lack, LACK_MAX, "the file ends within a line");
 }
 
 int source_count(const struct source *source, const char *text, int64_t *atoms) {
     const int status = lines_whole(&source->lines, "the number of atoms", text, atoms);
     if (!status && *atoms < 0) return source_fail(source, "the number of atoms is negative");
     return status;
+}
+
+int source_count_line(const struct source *source, int64_t *atoms) {
+    char word[32];
+    return source_count(source, source_word(source, word, sizeof word), atoms);
 }

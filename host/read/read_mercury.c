@@ -3,10 +3,8 @@
  * A frame is a line `N time xmin ymin zmin xmax ymax zmax` and N lines of 14 numbers. In two dimensions these lines
  * have 6 and 8 numbers. There are no ids. The file does not say which axes are periodic. */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 #include "text/read_number.h"
 
@@ -57,22 +55,21 @@ static int mercury_head(struct source *source, double head[8]) {
 
 /* Reads the number of spheres of the next frame. Blank lines are skipped. */
 static int mercury_count(struct source *source, int64_t *spheres, bool *more) {
-    int status;
     char word[32] = "";
-    while (!(status = lines_next(&source->lines, more)) && *more && lines_blank(&source->lines)) continue;
+    const int status = lines_next_text(&source->lines, more);
     if (status || !*more) return status;
     sscanf(source->lines.text, "%31s", word);
     return source_count(source, word, spheres);
 }
 
-static int skip_mercury(struct source *source, enum found *found, char *lack) {
+static int skip_mercury(struct source *source) {
     bool more;
     int64_t spheres;
-    *found = FOUND_END;
+    source->found = FOUND_END;
     int status = mercury_count(source, &spheres, &more);
     if (status || !more) return status;
-    status = source_skip(source, spheres, found, lack);
-    source_skip_end(source, found, lack);
+    status = source_skip(source, spheres, "spheres", NULL);
+    source_skip_end(source);
     return status;
 }
 

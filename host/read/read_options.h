@@ -49,7 +49,7 @@ struct read_options {
 /* The element of read_options.name for a column of the program. NULL: there is none. any_case: x may be called X. */
 const struct column_name *read_options_name(const struct read_options *options, const char *known, bool any_case);
 
-/* Says why nothing was left of the file's spheres. */
-const char *read_options_none(const struct read_options *options);
+/* The name of further column k or, from `extras` on, of the column of a rule. */
+const char *read_options_wanted(const struct read_options *options, size_t k);
 
 #endif

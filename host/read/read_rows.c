@@ -1,15 +1,18 @@
 /* read_rows.c - joins the rows that the ranks of a simulation wrote. SPDX-License-Identifier: MIT
  *
- * First the heads are read: they tell whether these are the files of all ranks of one step. Then ids are read, which
- * give each sphere its number. Then rows are read one by one, so that entries are in memory once. */
+ * All files are mapped. First the heads are compared: they tell whether these are the files of all ranks of one step.
+ * Then ids are sorted, which give each sphere its number. Then rows are joined one by one. */
 #include "read/read_rows.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/interrupt.h"
 #include "cli/message.h"
@@ -19,9 +22,14 @@
 
 enum { WORD = 8 };
 
+/* A mapped file and its arrays, as rows_file.h has them. */
 struct rank_file {
     const char *path;
-    fibrad_rows_head head;
+    void *map; /* NULL: not mapped */
+    size_t bytes;
+    const fibrad_rows_head *head;
+    const uint64_t *id, *start, *col;
+    double *f, *wall, *escaped, *beyond, *error, *radius, *emissivity, *x; /* not to be written */
 };
 
 /* An id, and the index of the file that has its row. */
@@ -35,56 +43,72 @@ static void *joined_memory(uint64_t count, size_t size) {
     return count < SIZE_MAX / size ? malloc((size_t)count * size + 1) : NULL;
 }
 
-static int file_read(const struct rank_file *rank_file, FILE *file, void *to, uint64_t words) {
-    if (fread(to, WORD, (size_t)words, file) == words) return STATUS_OK;
-    return message_at(STATUS_FILE, rank_file->path, 0, "%s", ferror(file) ? strerror(errno) : "ends too early");
-}
-
-/* Opens a file and goes to a word behind the head. Status 0 or STATUS_FILE. */
-static int file_open(const struct rank_file *rank_file, uint64_t word, FILE **file) {
-    *file = fopen(rank_file->path, "rb");
-    if (*file && fseeko(*file, (off_t)(sizeof rank_file->head + WORD * word), SEEK_SET) == 0) return STATUS_OK;
-    return message_at(STATUS_FILE, rank_file->path, 0, "%s", strerror(errno));
-}
-
 /* ---- heads ------------------------------------------------------------------------------------------------------ */
 
-static int check_size(const struct rank_file *rank_file, uint64_t bytes) {
-    const fibrad_rows_head *head = &rank_file->head;
-    const uint64_t most = bytes / WORD;
-    if (head->rows > most || head->entries > most)
-        return message_at(STATUS_INPUT, rank_file->path, 0, "ends too early");
-    const uint64_t words = sizeof *head / WORD + 1 + 2 * head->entries + (10 + head->walls) * head->rows;
-    if (bytes < WORD * words)
-        return message_at(STATUS_INPUT, rank_file->path, 0, "ends too early, after %" PRIu64 " of %" PRIu64 " bytes",
-                          bytes, WORD * words);
-    if (bytes > WORD * words)
-        return message_at(STATUS_INPUT, rank_file->path, 0, "has %" PRIu64 " bytes too many", bytes - WORD * words);
+static int map_file(struct rank_file *from) {
+    struct stat about = {0};
+    int status = output_spare(from->path);
+    if (status) return status;
+    const int file = open(from->path, O_RDONLY);
+    if (file < 0) return message_at(STATUS_FILE, from->path, 0, "%s", strerror(errno));
+    if (fstat(file, &about) != 0 || !S_ISREG(about.st_mode))
+        status = message_at(STATUS_FILE, from->path, 0, "cannot be read twice; a regular file is needed");
+    else if ((uint64_t)about.st_size < sizeof *from->head)
+        status = message_at(STATUS_INPUT, from->path, 0, "is no file of rows");
+    from->bytes = (size_t)about.st_size;
+    void *map = status ? NULL : mmap(NULL, from->bytes, PROT_READ, MAP_PRIVATE, file, 0);
+    if (map == MAP_FAILED)
+        status = message_at(STATUS_FILE, from->path, 0, "%s", strerror(errno));
+    else
+        from->map = map;
+    close(file);
+    return status;
+}
+
+static int check_size(const struct rank_file *from) {
+    const fibrad_rows_head *head = from->head;
+    const uint64_t most = from->bytes / WORD;
+    if (head->rows > most || head->entries > most) return message_at(STATUS_INPUT, from->path, 0, "ends too early");
+    const uint64_t bytes = sizeof *head + WORD * (1 + 2 * head->entries + (10 + head->walls) * head->rows);
+    if (from->bytes < bytes)
+        return message_at(STATUS_INPUT, from->path, 0, "ends too early, after %zu of %" PRIu64 " bytes", from->bytes,
+                          bytes);
+    if (from->bytes > bytes)
+        return message_at(STATUS_INPUT, from->path, 0, "has %" PRIu64 " bytes too many", from->bytes - bytes);
     return STATUS_OK;
 }
 
-static int check_head(const struct rank_file *rank_file, uint64_t bytes) {
-    const fibrad_rows_head *head = &rank_file->head;
-    if (bytes < sizeof *head || memcmp(head->magic, FIBRAD_ROWS_MAGIC, sizeof head->magic) != 0)
-        return message_at(STATUS_INPUT, rank_file->path, 0, "is no file of rows");
-    if (head->rank >= head->ranks || head->emissive > 1 || head->walls > FIBRAD_WALLS_MAX ||
-        !(head->cutoff >= 0 && head->cutoff < INFINITY))
-        return message_at(STATUS_INPUT, rank_file->path, 0, "its head is damaged");
-    return check_size(rank_file, bytes);
+/* Finds the arrays of a file whose size is right. The offsets of its rows must ascend. */
+static int find_arrays(struct rank_file *from) {
+    const fibrad_rows_head *head = from->head;
+    const uint64_t n = head->rows, words = sizeof *head / WORD + 2 * n + 1 + head->entries; /* before f */
+    from->id = (const uint64_t *)(head + 1);
+    from->start = from->id + n;
+    from->col = from->start + n + 1;
+    from->f = (double *)from->map + words;
+    from->wall = from->f + head->entries;
+    from->escaped = from->wall + n * head->walls;
+    from->beyond = from->escaped + n;
+    from->error = from->beyond + n;
+    from->radius = from->error + n;
+    from->emissivity = from->radius + n;
+    from->x = from->emissivity + n;
+    bool good = from->start[0] == 0 && from->start[n] == head->entries;
+    for (uint64_t k = 0; good && k < n; ++k) good = from->start[k] <= from->start[k + 1];
+    return good ? STATUS_OK : message_at(STATUS_INPUT, from->path, 0, "the starts of its rows are damaged");
 }
 
-static int read_head(struct rank_file *rank_file) {
-    const int spared = output_spare(rank_file->path);
-    if (spared) return spared;
-    FILE *file = fopen(rank_file->path, "rb");
-    if (!file) return message_at(STATUS_FILE, rank_file->path, 0, "%s", strerror(errno));
-    const size_t got = fread(&rank_file->head, 1, sizeof rank_file->head, file);
-    const int sought = fseeko(file, 0, SEEK_END);
-    const off_t bytes = ftello(file);
-    fclose(file);
-    if (sought != 0 || bytes < 0)
-        return message_at(STATUS_FILE, rank_file->path, 0, "cannot be read twice; a regular file is needed");
-    return check_head(rank_file, got < sizeof rank_file->head ? got : (uint64_t)bytes);
+static int read_head(struct rank_file *from) {
+    int status = map_file(from);
+    if (status) return status;
+    const fibrad_rows_head *head = from->head = from->map;
+    if (memcmp(head->magic, FIBRAD_ROWS_MAGIC, sizeof head->magic) != 0)
+        return message_at(STATUS_INPUT, from->path, 0, "is no file of rows");
+    if (head->rank >= head->ranks || head->emissive > 1 || head->walls > FIBRAD_WALLS_MAX ||
+        !(head->cutoff >= 0 && head->cutoff < INFINITY))
+        return message_at(STATUS_INPUT, from->path, 0, "its head is damaged");
+    status = check_size(from);
+    return status ? status : find_arrays(from);
 }
 
 /* The first difference between two heads that belongs to different steps or runs. NULL: there is none. */
@@ -97,28 +121,28 @@ static const char *head_difference(const fibrad_rows_head *a, const fibrad_rows_
 }
 
 static int compare_files(const void *a, const void *b) {
-    const uint64_t left = ((const struct rank_file *)a)->head.rank, right = ((const struct rank_file *)b)->head.rank;
+    const uint64_t left = ((const struct rank_file *)a)->head->rank, right = ((const struct rank_file *)b)->head->rank;
     return (left > right) - (left < right);
 }
 
 /* Sorts the files by rank. Each rank must be there once. */
 static int order_files(struct rank_file *rank_file, size_t count) {
     for (size_t k = 1; k < count; ++k) {
-        const char *difference = head_difference(&rank_file[0].head, &rank_file[k].head);
+        const char *difference = head_difference(rank_file[0].head, rank_file[k].head);
         if (difference)
             return message_at(STATUS_INPUT, rank_file[k].path, 0, "has %s than %.200s", difference, rank_file[0].path);
     }
     qsort(rank_file, count, sizeof *rank_file, compare_files);
     for (size_t k = 0; k < count; ++k) {
-        if (k > 0 && rank_file[k].head.rank == rank_file[k - 1].head.rank)
+        if (k > 0 && rank_file[k].head->rank == rank_file[k - 1].head->rank)
             return message_at(STATUS_INPUT, rank_file[k].path, 0, "has the rows of rank %" PRIu64 ", as %.200s has",
-                              rank_file[k].head.rank, rank_file[k - 1].path);
-        if (rank_file[k].head.rank != k) break;
+                              rank_file[k].head->rank, rank_file[k - 1].path);
+        if (rank_file[k].head->rank != k) break;
     }
-    for (size_t k = 0; k < rank_file[0].head.ranks; ++k)
-        if (k >= count || rank_file[k].head.rank != k)
+    for (size_t k = 0; k < rank_file[0].head->ranks; ++k)
+        if (k >= count || rank_file[k].head->rank != k)
             return message_at(STATUS_INPUT, rank_file[0].path, 0,
-                              "is one of %" PRIu64 " files; the file of rank %zu is missing", rank_file[0].head.ranks,
+                              "is one of %" PRIu64 " files; the file of rank %zu is missing", rank_file[0].head->ranks,
                               k);
     return STATUS_OK;
 }
@@ -131,23 +155,12 @@ static int compare_joined(const void *a, const void *b) {
     return (left > right) - (left < right);
 }
 
-/* Reads the ids of one file. id: room for them. */
-static int own_ids(const struct rank_file *rank_file, size_t index, struct owner *owner, uint64_t *id) {
-    FILE *file;
-    int status = file_open(rank_file, 0, &file);
-    if (!status) status = file_read(rank_file, file, id, rank_file->head.rows);
-    if (file) fclose(file);
-    for (uint64_t k = 0; !status && k < rank_file->head.rows; ++k) owner[k] = (struct owner){id[k], index};
-    return status;
-}
-
-/* Reads all ids and sorts them into joined->id. Each id must be there once. */
+/* Sorts all ids into joined->id. Each id must be there once. */
 static int order_ids(const struct rank_file *rank_file, struct owner *owner, struct joined *joined) {
     size_t n = 0;
-    for (size_t k = 0; k < joined->ranks; n += (size_t)rank_file[k++].head.rows) {
-        const int status = own_ids(&rank_file[k], k, owner + n, joined->id);
-        if (status) return status;
-    }
+    for (size_t file = 0; file < joined->ranks; ++file)
+        for (uint64_t k = 0; k < rank_file[file].head->rows; ++k)
+            owner[n++] = (struct owner){rank_file[file].id[k], file};
     qsort(owner, n, sizeof *owner, compare_joined);
     for (size_t k = 0; k < n; ++k) {
         joined->id[k] = owner[k].id;
@@ -161,7 +174,7 @@ static int order_ids(const struct rank_file *rank_file, struct owner *owner, str
 
 static int join_ids(const struct rank_file *rank_file, struct joined *joined) {
     uint64_t n = 0;
-    for (size_t k = 0; k < joined->ranks; ++k) n += rank_file[k].head.rows;
+    for (size_t k = 0; k < joined->ranks; ++k) n += rank_file[k].head->rows;
     if (n > FIBRAD_SPHERES_MAX)
         return message_at(STATUS_INPUT, rank_file[0].path, 0, "%" PRIu64 " spheres are too many for one matrix", n);
     joined->n = (uint32_t)n;
@@ -186,111 +199,47 @@ static uint32_t sphere_of(const struct joined *joined, uint64_t id) {
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-/* One file that is being read. All but the entries is in memory; entries are read row by row. */
-struct file_rows {
-    const struct rank_file *rank_file;
-    struct joined *joined;
-    uint64_t *id, *start; /* [rows], [rows + 1] */
-    double *wall;         /* [rows][walls] */
-    double *rest;         /* [8 rows]: escaped, beyond, error, radius, emissivity, x[rows][3] */
-    uint64_t *col_id;     /* [longest row] columns of the current row by id */
-    uint32_t *col;        /* [longest row] columns by number */
-    double *f;            /* [longest row] factors */
-    FILE *cols, *values;
-};
-
-static int check_starts(const struct file_rows *from, uint64_t *longest) {
-    const fibrad_rows_head *head = &from->rank_file->head;
-    bool good = from->start[0] == 0 && from->start[head->rows] == head->entries;
-    *longest = 0;
-    for (uint64_t k = 0; good && k < head->rows; ++k) {
-        const uint64_t length = from->start[k + 1] - from->start[k];
-        good = from->start[k] <= from->start[k + 1] && length <= from->joined->n;
-        if (length > *longest) *longest = length;
-    }
-    return good ? STATUS_OK : message_at(STATUS_INPUT, from->rank_file->path, 0, "the starts of its rows are damaged");
-}
-
-/* Reads all but the entries, and goes to the first entry. */
-static int load_around(struct file_rows *from) {
-    const fibrad_rows_head *head = &from->rank_file->head;
-    const uint64_t n = head->rows;
-    from->id = joined_memory(2 * n + 1, WORD);
-    from->wall = joined_memory((head->walls + 8) * n, WORD);
-    if (!from->id || !from->wall) return message_memory();
-    from->start = from->id + n;
-    from->rest = from->wall + n * head->walls;
-    int status = file_open(from->rank_file, 0, &from->cols);
-    if (!status) status = file_read(from->rank_file, from->cols, from->id, 2 * n + 1);
-    if (!status) status = file_open(from->rank_file, 2 * n + 1 + 2 * head->entries, &from->values);
-    if (!status) status = file_read(from->rank_file, from->values, from->wall, (head->walls + 8) * n);
-    if (status) return status;
-    const off_t entries = (off_t)(sizeof *head + WORD * (2 * n + 1 + head->entries));
-    return fseeko(from->values, entries, SEEK_SET) == 0
-               ? STATUS_OK
-               : message_at(STATUS_FILE, from->rank_file->path, 0, "%s", strerror(errno));
-}
-
-static int load_buffers(struct file_rows *from) {
-    uint64_t longest;
-    const int status = check_starts(from, &longest);
-    if (status) return status;
-    from->col_id = joined_memory(longest, sizeof *from->col_id);
-    from->col = joined_memory(longest, sizeof *from->col);
-    from->f = joined_memory(longest, sizeof *from->f);
-    return from->col_id && from->col && from->f ? STATUS_OK : message_memory();
-}
-
-static int row_fault(const struct file_rows *from, uint64_t k, const char *what) {
-    return message_at(STATUS_INPUT, from->rank_file->path, 0, "id %" PRIu64 ": %s", from->id[k], what);
+static int row_fault(const struct rank_file *from, uint64_t k, const char *what) {
+    return message_at(STATUS_INPUT, from->path, 0, "id %" PRIu64 ": %s", from->id[k], what);
 }
 
 /* Takes centre, radius and emissivity of the sphere of row k. */
-static int take_sphere(const struct file_rows *from, uint64_t k, uint32_t i) {
-    const uint64_t n = from->rank_file->head.rows;
-    const double *radius = from->rest + 3 * n, *emissivity = radius + n, *x = emissivity + n;
-    struct joined *to = from->joined;
+static int take_sphere(const struct rank_file *from, uint64_t k, uint32_t i, struct joined *to) {
     for (uint64_t axis = 0; axis < 3; ++axis) {
-        to->x[3 * (uint64_t)i + axis] = x[3 * k + axis];
-        if (!isfinite(x[3 * k + axis])) return row_fault(from, k, "its centre is not finite");
+        to->x[3 * (uint64_t)i + axis] = from->x[3 * k + axis];
+        if (!isfinite(from->x[3 * k + axis])) return row_fault(from, k, "its centre is not finite");
     }
-    to->radius[i] = radius[k];
-    to->emissivity[i] = emissivity[k];
+    to->radius[i] = from->radius[k];
+    to->emissivity[i] = from->emissivity[k];
     if (!(to->radius[i] > 0 && to->radius[i] < INFINITY)) return row_fault(from, k, "its radius is not above 0");
     if (!(to->emissivity[i] >= 0 && to->emissivity[i] <= 1))
         return row_fault(from, k, "its emissivity is not within 0 and 1");
     return STATUS_OK;
 }
 
-static int take_entries(struct file_rows *from, uint64_t k, uint32_t length) {
-    int status = file_read(from->rank_file, from->cols, from->col_id, length);
-    if (!status) status = file_read(from->rank_file, from->values, from->f, length);
-    for (uint32_t j = 0; !status && j < length; ++j) {
-        from->col[j] = sphere_of(from->joined, from->col_id[j]);
-        if (from->col[j] == from->joined->n)
-            return message_at(STATUS_INPUT, from->rank_file->path, 0,
-                              "id %" PRIu64 " has an entry for id %" PRIu64 ", which has no row", from->id[k],
-                              from->col_id[j]);
-    }
-    return status;
-}
-
-static int take_row(struct file_rows *from, uint64_t k) {
-    const fibrad_rows_head *head = &from->rank_file->head;
-    const uint32_t length = (uint32_t)(from->start[k + 1] - from->start[k]);
-    const fibrad_row row = {.col = from->col,
-                            .f = from->f,
-                            .wall = from->wall + k * head->walls,
-                            .sphere = sphere_of(from->joined, from->id[k]),
-                            .length = length,
-                            .escaped = from->rest[k],
-                            .beyond = from->rest[head->rows + k],
-                            .error = from->rest[2 * head->rows + k]};
-    int status = take_sphere(from, k, row.sphere);
-    if (!status) status = take_entries(from, k, length);
-    if (!status && !(row.error < INFINITY)) return row_fault(from, k, "its error is not finite");
+/* Joins row k. col [joined->n]: room for its columns. */
+static int take_row(const struct rank_file *from, uint64_t k, uint32_t *col, struct joined *joined) {
+    const uint64_t start = from->start[k], length = from->start[k + 1] - start;
+    if (length > joined->n) return message_at(STATUS_INPUT, from->path, 0, "the starts of its rows are damaged");
+    const fibrad_row row = {.col = col,
+                            .f = from->f + start,
+                            .wall = from->wall + k * from->head->walls,
+                            .sphere = sphere_of(joined, from->id[k]),
+                            .length = (uint32_t)length,
+                            .escaped = from->escaped[k],
+                            .beyond = from->beyond[k],
+                            .error = from->error[k]};
+    const int status = take_sphere(from, k, row.sphere, joined);
     if (status) return status;
-    switch (fibrad_rows_add(&from->joined->rows, &row, from->joined->walls)) {
+    for (uint64_t j = 0; j < length; ++j) {
+        col[j] = sphere_of(joined, from->col[start + j]);
+        if (col[j] == joined->n)
+            return message_at(STATUS_INPUT, from->path, 0,
+                              "id %" PRIu64 " has an entry for id %" PRIu64 ", which has no row", from->id[k],
+                              from->col[start + j]);
+    }
+    if (!(row.error < INFINITY)) return row_fault(from, k, "its error is not finite");
+    switch (fibrad_rows_add(&joined->rows, &row, joined->walls)) {
     case FIBRAD_OK:
         return interrupt_status();
     case FIBRAD_E_ARGUMENT:
@@ -300,34 +249,25 @@ static int take_row(struct file_rows *from, uint64_t k) {
     }
 }
 
-static int join_file(const struct rank_file *rank_file, struct joined *joined) {
-    struct file_rows from = {.rank_file = rank_file, .joined = joined};
-    int status = load_around(&from);
-    if (!status) status = load_buffers(&from);
-    for (uint64_t k = 0; !status && k < rank_file->head.rows; ++k) status = take_row(&from, k);
-    if (from.cols) fclose(from.cols);
-    if (from.values) fclose(from.values);
-    free(from.id);
-    free(from.wall);
-    free(from.col_id);
-    free(from.col);
-    free(from.f);
-    return status;
-}
-
 static int join_files(struct rank_file *rank_file, size_t count, struct joined *joined) {
     int status = STATUS_OK;
     for (size_t k = 0; !status && k < count; ++k) status = read_head(&rank_file[k]);
     if (!status) status = order_files(rank_file, count);
     if (status) return status;
-    const fibrad_rows_head *head = &rank_file[0].head;
+    const fibrad_rows_head *head = rank_file[0].head;
     joined->ranks = head->ranks;
     joined->step = head->step;
     joined->walls = (uint32_t)head->walls;
     joined->emissive = head->emissive != 0;
     joined->cutoff = head->cutoff;
     status = join_ids(rank_file, joined);
-    for (size_t k = 0; !status && k < count; ++k) status = join_file(&rank_file[k], joined);
+    if (status) return status;
+    uint32_t *col = joined_memory(joined->n, sizeof *col);
+    if (!col) return message_memory();
+    for (size_t file = 0; file < count; ++file)
+        for (uint64_t k = 0; !status && k < rank_file[file].head->rows; ++k)
+            status = take_row(&rank_file[file], k, col, joined);
+    free(col);
     return status;
 }
 
@@ -337,6 +277,8 @@ int read_rows(const char *const *paths, size_t count, struct joined *joined) {
     if (!rank_file) return message_memory();
     for (size_t k = 0; k < count; ++k) rank_file[k] = (struct rank_file){.path = paths[k]};
     const int status = join_files(rank_file, count, joined);
+    for (size_t k = 0; k < count; ++k)
+        if (rank_file[k].map) munmap(rank_file[k].map, rank_file[k].bytes);
     free(rank_file);
     return status;
 }

@@ -20,9 +20,9 @@ struct joined {
     fibrad_rows rows;            /* rows of all spheres, raw */
 };
 
-/* Reads the files of all ranks, in any order. host/couple/rows_file.h has their format. Takes 12 bytes per entry and
- * some 130 per sphere. Free the result also after an error. Status 0, STATUS_FILE, STATUS_MEMORY, that of a signal, or
- * STATUS_INPUT naming the file and, if one sphere is at fault, its id. */
+/* Reads the files of all ranks, in any order. host/couple/rows_file.h has their format. Files are mapped. Takes 12
+ * bytes per entry and some 130 per sphere. Free the result also after an error. Status 0, STATUS_FILE, STATUS_MEMORY,
+ * that of a signal, or STATUS_INPUT naming the file and, if one sphere is at fault, its id. */
 int read_rows(const char *const *paths, size_t count, struct joined *joined);
 void joined_free(struct joined *joined);
 

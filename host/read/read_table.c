@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 #include "text/header.h"
 
@@ -64,10 +63,12 @@ static int find_header(struct source *source, struct header *header, bool *of_ya
 }
 
 static int find_columns(struct source *source, const struct header *header, char separator, struct bed *bed) {
-    struct lines at = source->lines; /* a copy with the line of the header, for messages */
-    at.number = header->line;
+    const uint64_t here = source->lines.number;
+    source->lines.number = header->line; /* for messages */
     source->columns.commas = separator != ',';
-    return columns_find(&source->columns, &at, &header->names, header->unit, &source->options, bed);
+    const int status = columns_find(source, &header->names, header->unit, bed);
+    source->lines.number = here;
+    return status;
 }
 
 /* Reads a row. If the last name of YADE's header is attrs, a row may have any number of attributes. */
@@ -77,7 +78,7 @@ static int read_row(struct source *source, const struct header *header, bool of_
     if (status) return status;
     if (of_yade && source->fields.n > names->n && strcmp(names->at[names->n - 1], "attrs") == 0)
         source->fields.n = names->n;
-    return columns_add(&source->columns, &source->lines, &source->fields, &source->options, bed);
+    return columns_add(source, bed);
 }
 
 static int read_table(struct source *source, struct bed *bed) {

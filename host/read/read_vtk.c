@@ -1,15 +1,12 @@
 /* read_vtk.c - beds from VTK files, legacy or XML, with points and an array of radii. SPDX-License-Identifier: MIT
  *
  * The spheres of a .pvtp or .pvtu file are in other files, its pieces. */
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 
-#include "cli/message.h"
 #include "cli/spelling.h"
 #include "read/read_format.h"
 #include "read/vtk/vtk_grid.h"
@@ -98,7 +95,7 @@ static int add_point(const struct vtk_file *file, const struct vtk_grid *grid, u
             status = vtk_fail(grid, NULL, "the id of point %llu is %g", (unsigned long long)i, id);
         if (!status) sphere.id = (int64_t)id;
     }
-    if (!status) status = columns_add_sphere(&file->source->lines, options, &sphere, bed);
+    if (!status) status = columns_add_sphere(file->source, &sphere, bed);
     for (size_t k = 0; k < bed->extras && !status; ++k) {
         const double value = wanted[EXTRAS + k].values[i] * file->factor[k];
         bed->extra[(bed->n - 1) * bed->extras + k] = value;
@@ -209,12 +206,11 @@ static int want(struct vtk_file *file) {
     char unit[UNIT_LENGTH];
     int status = want_usual(file);
     for (size_t k = 0; k < options->extras + options->rules && !status; ++k) {
-        const char *name = k < options->extras ? options->extra[k] : options->rule[k - options->extras].column;
+        const char *name = read_options_wanted(options, k);
         const struct column_name *given = read_options_name(options, name, false);
         file->wanted[EXTRAS + k].name = given ? given->name : name;
         unit_of(&file->wanted[EXTRAS + k], unit);
-        if (k < options->extras)
-            status = columns_factor(&file->source->lines, options, k, unit, file->bed->units, &file->factor[k]);
+        if (k < options->extras) status = columns_factor(file->source, k, unit, file->bed->units, &file->factor[k]);
     }
     return status;
 }

@@ -11,7 +11,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 #include "text/read_number.h"
 
@@ -30,18 +29,20 @@ static bool is_xyz(const struct source *source) {
     return text == end;
 }
 
-static int skip_xyz(struct source *source, enum found *found, char *lack) {
+/* Reads the number of atoms of the next frame. */
+static int xyz_count(struct source *source, int64_t *atoms, bool *more) {
+    const int status = lines_next_text(&source->lines, more);
+    return status || !*more ? status : source_count_line(source, atoms);
+}
+
+static int skip_xyz(struct source *source) {
     bool more;
     int64_t atoms;
-    char word[32];
-    int status;
-    *found = FOUND_END;
-    while (!(status = lines_next(&source->lines, &more)) && more && lines_blank(&source->lines)) continue;
+    source->found = FOUND_END;
+    int status = xyz_count(source, &atoms, &more);
     if (status || !more) return status;
-    status = source_count(source, source_word(source, word, sizeof word), &atoms);
-    if (!status) status = source_skip(source, 1, found, lack);
-    if (status || *found == FOUND_PART) return status;
-    return source_skip(source, atoms, found, lack);
+    status = source_skip(source, 1, "spheres", NULL);
+    return status || source->found == FOUND_PART ? status : source_skip(source, atoms, "spheres", NULL);
 }
 
 /* Copies the value of a key of the comment. The value stands behind =, in quotes or up to a blank. False: there is no
@@ -76,14 +77,12 @@ static int take_numbers(const struct source *source, const char *comment, const 
     for (; (word = strtok_r(rest, " \t", &rest)); ++count) {
         double number;
         if (!number_read(word, &number) || !isfinite(number))
-            return message_at(STATUS_INPUT, source->lines.name, source->lines.number, "%s: '%.40s' is not a number",
-                              key, word);
+            return source_fail(source, "%s: '%.40s' is not a number", key, word);
         if (count < n) value[count] = number;
     }
     if (count == n) return STATUS_OK;
-    return message_at(STATUS_INPUT, source->lines.name, source->lines.number,
-                      "%s has %d number%s; it needs %d in quotes: %s=\"%s\"", key, count, count == 1 ? "" : "s", n, key,
-                      like);
+    return source_fail(source, "%s has %d number%s; it needs %d in quotes: %s=\"%s\"", key, count,
+                       count == 1 ? "" : "s", n, key, like);
 }
 
 /* Reads pbc: three of T and F. Without pbc all axes are periodic. */
@@ -108,33 +107,26 @@ static int read_lattice(const struct source *source, const char *comment, struct
     return status ? status : source_edges(source, "the lattice is tilted", edge, origin, periodic, bed);
 }
 
-/* Prints the names of the columns of one property. The columns of pos are x, y and z. */
-static void print_names(FILE *names, const char *property, long count) {
-    const bool position = strcasecmp(property, "pos") == 0 && count == 3;
-    for (long k = 0; k < count; ++k)
-        if (position)
-            fprintf(names, "%c ", "xyz"[k]);
-        else if (count == 1)
-            fprintf(names, "%s ", property);
-        else
-            fprintf(names, "%s:%ld ", property, k);
-}
-
 /* Prints the names of the columns of all properties: species:S:1:pos:R:3 becomes `species x y z`. */
-static int read_properties(const struct source *source, char *text, FILE *names) {
-    static const char malformed[] = "Properties needs name:type:count for each, such as pos:R:3:radius:R:1";
+static int print_names(const struct source *source, char *properties, FILE *names) {
     struct fields piece = {0};
     int64_t count, columns = 0;
-    int status = fields_split(&piece, text, ":");
-    if (!status && piece.n % 3 != 0) status = source_fail(source, malformed);
-    for (size_t k = 0; k + 2 < piece.n && !status; k += 3) {
-        if (!number_read_whole(piece.at[k + 2], &count) || count < 1 || (columns += count) > COLUMNS_MAX)
-            status = source_fail(source, malformed);
-        else
-            print_names(names, piece.at[k], (long)count);
+    int status = fields_split(&piece, properties, ":");
+    bool good = piece.n % 3 == 0;
+    for (size_t k = 0; k + 2 < piece.n && !status && good; k += 3) {
+        good = number_read_whole(piece.at[k + 2], &count) && count >= 1 && (columns += count) <= COLUMNS_MAX;
+        const bool position = strcasecmp(piece.at[k], "pos") == 0 && count == 3;
+        for (int64_t c = 0; c < count && good; ++c)
+            if (position)
+                fprintf(names, "%c ", "xyz"[c]);
+            else if (count == 1)
+                fprintf(names, "%s ", piece.at[k]);
+            else
+                fprintf(names, "%s:%" PRId64 " ", piece.at[k], c);
     }
     free(piece.at);
-    return status;
+    if (status || good) return status;
+    return source_fail(source, "Properties needs name:type:count for each, such as pos:R:3:radius:R:1");
 }
 
 static int extended_columns(struct source *source, char *properties, struct bed *bed) {
@@ -142,7 +134,7 @@ static int extended_columns(struct source *source, char *properties, struct bed 
     size_t size;
     FILE *file = open_memstream(&names, &size);
     if (!file) return message_memory();
-    int status = read_properties(source, properties, file);
+    int status = print_names(source, properties, file);
     if (fclose(file) != 0 && !status) status = message_memory();
     if (!status) status = source_columns(source, names, bed);
     free(names);
@@ -164,10 +156,8 @@ static int read_xyz(struct source *source, struct bed *bed) {
     static const char lammps[] = "Atoms. Timestep: ";
     bool more;
     int64_t atoms = 0;
-    char word[32], properties[4000];
-    int status;
-    while (!(status = lines_next(&source->lines, &more)) && lines_blank(&source->lines)) continue;
-    if (!status) status = source_count(source, source_word(source, word, sizeof word), &atoms);
+    char properties[4000];
+    int status = xyz_count(source, &atoms, &more);
     if (!status) status = lines_next(&source->lines, &more);
     if (status || atoms == 0) return status;
     const char *comment = source->lines.text;

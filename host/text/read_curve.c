@@ -7,7 +7,6 @@
 #include <strings.h>
 
 #include "cli/memory.h"
-#include "cli/message.h"
 #include "text/header.h"
 #include "text/unit.h"
 
@@ -28,23 +27,15 @@ struct table {
     bool comment;                     /* the header is a comment */
     char mark;                        /* decimal point or comma, the first one in the file; 0: none so far */
     size_t width;
-    size_t at[2];                /* columns of x and y; without x only at[1] has a meaning */
-    double factor[2], offset[2]; /* to the expected units */
-    const char *what;            /* y in messages */
-    double low, high;
+    size_t at[2];                   /* columns of x and y; without x only at[1] has a meaning */
+    double factor[2], offset[2];    /* to the expected units */
+    const struct curve_axis *x, *y; /* x NULL: only y is wanted */
+    const char *what;               /* y in messages */
+    double low, high;               /* limits of y */
+    struct curve *curve;
 };
 
 enum { X, Y };
-
-/* Makes room for another point. */
-static int curve_grow(struct curve *curve) {
-    if (curve->n & (curve->n - 1)) return STATUS_OK; /* room doubles when n is a power of 2 */
-    const size_t room = curve->n ? 2 * curve->n : 1;
-    bool good = true;
-    curve->x = memory_resized(curve->x, room * sizeof *curve->x, &good);
-    curve->y = memory_resized(curve->y, room * sizeof *curve->y, &good);
-    return good ? STATUS_OK : message_memory();
-}
 
 /* ---- header ----------------------------------------------------------------------------------------------------- */
 
@@ -66,14 +57,13 @@ static const char *unit_of_column(const struct header *header, size_t k) {
     if (*header->unit[k] || !behind) return header->unit[k];
     ++behind;
     const bool time = is_usual(name, TIMES) && unit_factor(behind, "s", &factor);
-    return time || (is_usual(name, CURVE_TEMPERATURES) && (unit_is(behind, "K") || unit_is(behind, "C"))) ? behind : "";
+    return time || (is_usual(name, CURVE_TEMPERATURES) && unit_temperature(behind)) ? behind : "";
 }
 
 /* Whether a unit is of the kind that an axis expects. K and C are of one kind. */
 static bool is_of_kind(const char *unit, const struct curve_axis *axis) {
-    const bool kelvins = unit_is(axis->unit, "K") || unit_is(axis->unit, "C");
     double factor;
-    if (kelvins) return unit_is(unit, "K") || unit_is(unit, "C");
+    if (unit_temperature(axis->unit)) return unit_temperature(unit);
     return *axis->unit && !unit_none(unit) && unit_factor(unit, axis->unit, &factor);
 }
 
@@ -101,20 +91,20 @@ static int take_column_unit(struct table *table, int axis, const struct curve_ax
         table->offset[axis] = 273.15;
         return STATUS_OK;
     }
-    const bool temperature = unit_is(expected->unit, "K") || unit_is(expected->unit, "C");
     return message_at(STATUS_INPUT, table->lines.name, table->header.line,
                       "the column %.40s is in [%.20s], but is taken as [%.20s]%s",
                       table->header.names.at[table->at[axis]], unit, *expected->unit ? expected->unit : "-",
-                      temperature ? "; see --temperature-unit" : "");
+                      unit_temperature(expected->unit) ? "; see --temperature-unit" : "");
 }
 
 static int wrong_width(const struct table *table, size_t n, size_t wanted) {
-    return message_at(STATUS_INPUT, table->lines.name, table->lines.number, "%zu columns instead of %zu", n, wanted);
+    return lines_fault(&table->lines, "%zu columns instead of %zu", n, wanted);
 }
 
 /* Finds out which column is which. Without a header, or with unusual names, x is the first of two columns. Words
- * between blanks may be a title. They are names only if all are known. x NULL: only y is wanted. */
-static int find_axes(struct table *table, const struct curve_axis *x, const struct curve_axis *y) {
+ * between blanks may be a title. They are names only if all are known. */
+static int find_axes(struct table *table) {
+    const struct curve_axis *x = table->x, *y = table->y;
     const size_t n = table->width, wanted = x ? 2 : 1;
     const bool sure = table->header_separator == table->separator && table->separator != ' ';
     bool named = table->header_separator && table->header.names.n == n;
@@ -133,13 +123,13 @@ static int find_axes(struct table *table, const struct curve_axis *x, const stru
 }
 
 /* Takes a text of the current line as the header. A comment must have a name of a column. */
-static int take_names(struct table *table, const char *text, const struct curve_axis *x, const struct curve_axis *y) {
+static int take_names(struct table *table, const char *text) {
     const bool comment = text != table->lines.text;
     struct header header = {0};
     const int status = header_take(&header, &table->lines, text, NULL);
     while (header.names.n > 1 && !*header.names.at[header.names.n - 1]) --header.names.n;
     const size_t n = header.names.n;
-    if (status || (comment && (!x || find_axis(&header, x) == n) && find_axis(&header, y) == n)) {
+    if (status || (comment && (!table->x || find_axis(&header, table->x) == n) && find_axis(&header, table->y) == n)) {
         header_free(&header);
         return status;
     }
@@ -152,42 +142,42 @@ static int take_names(struct table *table, const char *text, const struct curve_
 
 /* ---- rows ------------------------------------------------------------------------------------------------------- */
 
-static int curve_point(struct table *table, bool with_x, struct curve *curve) {
+static int curve_point(struct table *table) {
+    struct curve *curve = table->curve;
     double value[2] = {0, 0};
     if (table->fields.n != table->width) return wrong_width(table, table->fields.n, table->width);
-    int status = curve_grow(curve);
-    for (int k = with_x ? X : Y; k <= Y && !status; ++k) {
+    bool good = true;
+    curve->x = memory_grown(curve->x, curve->n, sizeof *curve->x, &good);
+    curve->y = memory_grown(curve->y, curve->n, sizeof *curve->y, &good);
+    int status = good ? STATUS_OK : message_memory();
+    for (int k = table->x ? X : Y; k <= Y && !status; ++k) {
         status = lines_decimal(&table->lines, k == X ? "number" : table->what, table->fields.at[table->at[k]],
                                table->separator == ',' ? NULL : &table->mark, &value[k]);
         value[k] = value[k] * table->factor[k] + table->offset[k];
     }
     if (status) return status;
     if (!(value[Y] >= table->low && value[Y] <= table->high))
-        return message_at(STATUS_INPUT, table->lines.name, table->lines.number,
-                          "the %s is %g; it must be within %g and %g", table->what, value[Y], table->low, table->high);
-    if (!isfinite(value[X]))
-        return message_at(STATUS_INPUT, table->lines.name, table->lines.number, "%s is too large",
-                          table->fields.at[table->at[X]]);
-    if (with_x && curve->n > 0 && !(value[X] > curve->x[curve->n - 1]))
-        return message_at(STATUS_INPUT, table->lines.name, table->lines.number, "%s is not above the number before",
-                          table->fields.at[table->at[X]]);
+        return lines_fault(&table->lines, "the %s is %g; it must be within %g and %g", table->what, value[Y],
+                           table->low, table->high);
+    if (!isfinite(value[X])) return lines_fault(&table->lines, "%s is too large", table->fields.at[table->at[X]]);
+    if (table->x && curve->n > 0 && !(value[X] > curve->x[curve->n - 1]))
+        return lines_fault(&table->lines, "%s is not above the number before", table->fields.at[table->at[X]]);
     curve->x[curve->n] = value[X];
     curve->y[curve->n++] = value[Y];
     return STATUS_OK;
 }
 
 /* Takes a line of the table: a header, a comment that may be one, or a row. */
-static int take_table_line(struct table *table, bool *header_may_follow, const struct curve_axis *x,
-                           const struct curve_axis *y, struct curve *curve) {
+static int take_table_line(struct table *table, bool *header_may_follow) {
     struct lines *lines = &table->lines;
     if (lines_blank(lines)) return STATUS_OK;
     if (*lines->text == '#') {
         const char *names = lines->text + strspn(lines->text, "# \t");
-        return *header_may_follow && *names && !strchr(names, '"') ? take_names(table, names, x, y) : STATUS_OK;
+        return *header_may_follow && *names && !strchr(names, '"') ? take_names(table, names) : STATUS_OK;
     }
     if (*header_may_follow && !header_is_row(lines)) {
         *header_may_follow = false;
-        return take_names(table, lines->text, x, y);
+        return take_names(table, lines->text);
     }
     *header_may_follow = false;
     table->separator = header_separator(lines->text);
@@ -195,24 +185,24 @@ static int take_table_line(struct table *table, bool *header_may_follow, const s
     while (table->fields.n > 1 && !*table->fields.at[table->fields.n - 1]) --table->fields.n; /* a separator ends it */
     if (!status && table->width == 0) {
         table->width = table->fields.n;
-        status = find_axes(table, x, y);
+        status = find_axes(table);
     }
-    return status ? status : curve_point(table, x != NULL, curve);
+    return status ? status : curve_point(table);
 }
 
-static int table_read(const char *path, struct table *table, const struct curve_axis *x, const struct curve_axis *y,
-                      struct curve *curve) {
-    *curve = (struct curve){0};
+static int table_read(const char *path, struct table *table) {
+    *table->curve = (struct curve){0};
     table->factor[X] = table->factor[Y] = 1;
     int status = lines_open(&table->lines, path);
     for (bool more = true, header_may_follow = true; !status;) {
         status = lines_next(&table->lines, &more);
         if (status || !more) break;
-        status = take_table_line(table, &header_may_follow, x, y, curve);
+        status = take_table_line(table, &header_may_follow);
     }
     if (!status && table->lines.truncated)
         status = message_at(STATUS_INPUT, table->lines.name, 0, "the gzip file is cut off");
-    if (!status && curve->n == 0) status = message_at(STATUS_INPUT, lines_name(path), 0, "the table has no numbers");
+    if (!status && table->curve->n == 0)
+        status = message_at(STATUS_INPUT, lines_name(path), 0, "the table has no numbers");
     lines_close(&table->lines);
     header_free(&table->header);
     free(table->fields.at);
@@ -221,12 +211,13 @@ static int table_read(const char *path, struct table *table, const struct curve_
 
 int curve_read(const char *path, const char *what, const struct curve_axes *axes, double low, double high,
                struct curve *curve) {
-    return table_read(path, &(struct table){.what = what, .low = low, .high = high}, &axes->x, &axes->y, curve);
+    struct table table = {.x = &axes->x, .y = &axes->y, .what = what, .low = low, .high = high, .curve = curve};
+    return table_read(path, &table);
 }
 
 int column_read(const char *path, const char *what, const struct curve_axis *y, double low, double high,
                 struct curve *column) {
-    return table_read(path, &(struct table){.what = what, .low = low, .high = high}, NULL, y, column);
+    return table_read(path, &(struct table){.y = y, .what = what, .low = low, .high = high, .curve = column});
 }
 
 void curve_free(struct curve *curve) {

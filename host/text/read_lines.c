@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include "cli/interrupt.h"
-#include "cli/message.h"
 #include "cli/output.h"
 #include "text/read_number.h"
 
@@ -100,8 +99,7 @@ static int find_end(struct lines *lines, size_t *end) {
         *end = found ? (size_t)(found - lines->buffer) : lines->end;
         if (found || lines->finished) return STATUS_OK;
         sought = lines->end - lines->next;
-        if (sought >= MOST)
-            return message_at(STATUS_INPUT, lines->name, lines->number, "the line has no end; is this a text file?");
+        if (sought >= MOST) return lines_fault(lines, "the line has no end; is this a text file?");
         const int status = lines_read_block(lines);
         if (status) return status;
     }
@@ -126,9 +124,14 @@ int lines_next(struct lines *lines, bool *more) {
     if (lines->length && lines->text[lines->length - 1] == '\r') --lines->length;
     lines->behind = lines->text[lines->length];
     lines->text[lines->length] = 0;
-    if (memchr(lines->text, 0, lines->length))
-        return message_at(STATUS_INPUT, lines->name, lines->number, "binary data; a text file is expected");
+    if (memchr(lines->text, 0, lines->length)) return lines_fault(lines, "binary data; a text file is expected");
     return STATUS_OK;
+}
+
+int lines_next_text(struct lines *lines, bool *more) {
+    int status;
+    while (!(status = lines_next(lines, more)) && *more && lines_blank(lines)) continue;
+    return status;
 }
 
 void lines_hold(struct lines *lines) {
@@ -236,8 +239,7 @@ int fields_split_at(struct fields *fields, const struct lines *lines, char *text
         if (*text == '"') {
             end = unquote(text);
             if (end) end = skip_blanks(end, separator);
-            if (!end || (*end && *end != separator))
-                return message_at(STATUS_INPUT, lines->name, lines->number, "a quoted field does not end");
+            if (!end || (*end && *end != separator)) return lines_fault(lines, "a quoted field does not end");
             after = *end;
         } else {
             while (*end && *end != separator) ++end;
@@ -252,24 +254,20 @@ int fields_split_at(struct fields *fields, const struct lines *lines, char *text
 }
 
 int lines_number(const struct lines *lines, const char *what, const char *text, double *value) {
-    if (!number_read(text, value))
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is not a number: '%.40s'", what, text);
-    if (!isfinite(*value))
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is not finite: '%.40s'", what, text);
+    if (!number_read(text, value)) return lines_fault(lines, "%s is not a number: '%.40s'", what, text);
+    if (!isfinite(*value)) return lines_fault(lines, "%s is not finite: '%.40s'", what, text);
     return STATUS_OK;
 }
 
 int lines_whole(const struct lines *lines, const char *what, const char *text, int64_t *value) {
     if (number_read_whole(text, value)) return STATUS_OK;
-    return message_at(STATUS_INPUT, lines->name, lines->number,
-                      errno ? "%s is too large: '%.40s'" : "%s is not a whole number: '%.40s'", what, text);
+    return lines_fault(lines, errno ? "%s is too large: '%.40s'" : "%s is not a whole number: '%.40s'", what, text);
 }
 
 int lines_decimal(const struct lines *lines, const char *what, char *text, char *mark, double *value) {
     char *here = mark ? strpbrk(text, ".,") : NULL;
     if (here && *mark && *here != *mark)
-        return message_at(STATUS_INPUT, lines->name, lines->number,
-                          "%s is '%.40s': decimal commas and decimal points in one file", what, text);
+        return lines_fault(lines, "%s is '%.40s': decimal commas and decimal points in one file", what, text);
     if (here) *mark = *here, *here = '.';
     return lines_number(lines, what, text, value);
 }

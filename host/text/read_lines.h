@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cli/message.h"
+
 struct gzFile_s;
 
 struct lines {
@@ -42,9 +44,15 @@ const char *lines_name(const char *path);
 int lines_open(struct lines *lines, const char *path);
 void lines_close(struct lines *lines);
 
+/* Prints an error with the number of the current line, as printf does. Is STATUS_INPUT. */
+#define lines_fault(lines, ...) message_at(STATUS_INPUT, (lines)->name, (lines)->number, __VA_ARGS__)
+
 /* Reads the next line. *more: false at the end of the file. Status 0, STATUS_INPUT (binary data, a line without end,
  * damaged gzip file), STATUS_FILE, STATUS_MEMORY or that of a signal. */
 int lines_next(struct lines *lines, bool *more);
+
+/* Reads the next line that is not blank. As lines_next. */
+int lines_next_text(struct lines *lines, bool *more);
 
 /* Makes lines_next return the current line once more. Until then there is no current line. */
 void lines_hold(struct lines *lines);

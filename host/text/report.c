@@ -79,12 +79,7 @@ void report_whole(struct report *report, const char *key, int64_t number) {
     end_entry(report);
 }
 
-void report_count(struct report *report, const char *key, uint64_t count) {
-    begin_entry(report, key);
-    if (report->json) fprintf(report->json, "%" PRIu64, count);
-    if (report->text) fprintf(report->text, "%" PRIu64, count);
-    end_entry(report);
-}
+void report_count(struct report *report, const char *key, uint64_t count) { report_whole(report, key, (int64_t)count); }
 
 void report_value(struct report *report, const char *key, double value, int digits) {
     begin_entry(report, key);

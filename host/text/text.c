@@ -36,15 +36,6 @@ static uint64_t scaled_rounded(const struct scaled *scaled) {
     return below + (rest > half || (rest == half && below & 1));
 }
 
-/* Rounds to a multiple of `unit`. `digits` are rounded already. If the digits end in a half, the exact number decides
- * on which side of the half it lies. */
-static uint64_t rounded_further(const struct scaled *scaled, uint64_t digits, uint64_t unit) {
-    const uint64_t up = (digits + unit / 2) / unit * unit;
-    if (digits % unit != unit / 2) return up;
-    const wide ours = (wide)digits << scaled->shift;
-    return ours > scaled->product || (ours == scaled->product && up / unit % 2 == 1) ? up - unit : up;
-}
-
 /* Whether the digits read back as the same double: they are nearer to the number than half the distance to the next
  * double. edge: the number is a power of two, and the next double below is half as far. */
 static bool reads_back(const struct scaled *scaled, uint64_t digits, bool edge) {
@@ -55,26 +46,21 @@ static bool reads_back(const struct scaled *scaled, uint64_t digits, bool edge) 
 
 /* Finds 17 digits of a number above 0, and the power of ten of the first digit. If 15 or 16 digits read back as the
  * same number, the last digits are 0. False: the number is too large or too small, since m 5^k would have more than 128
- * bits or no shift would be left. */
+ * bits, k would be below 0 or no shift would be left. */
 static bool digits_of(double value, uint64_t *digits, int *power) {
     int e;
     const uint64_t m = (uint64_t)ldexp(frexp(value, &e), 53);
-    if (e < -52 || e > 50) return false;
-    *power = (int)floor((e - 1) * 0.30102999566398120); /* the power, or one less */
-    struct scaled all = scaled(m, e - 53, DIGITS - 1 - *power);
-    *digits = scaled_rounded(&all);
-    if (*digits >= 100000000000000000) {
-        all = scaled(m, e - 53, DIGITS - 1 - ++*power);
+    if (e < -52 || e > 46) return false;
+    uint64_t missing = 100; /* power of ten of the digits that are not tried */
+    for (int count = DIGITS - 2;; ++count, missing /= 10) {
+        *power = (int)floor((e - 1) * 0.30102999566398120); /* the power, or one less */
+        struct scaled all = scaled(m, e - 53, count - 1 - *power);
+        if (scaled_rounded(&all) >= 100000000000000000 / missing) all = scaled(m, e - 53, count - 1 - ++*power);
         *digits = scaled_rounded(&all);
+        if (count < DIGITS && !reads_back(&all, *digits, m == (uint64_t)1 << 52)) continue;
+        *digits *= missing;
+        return true;
     }
-    for (uint64_t unit = 100; unit > 1; unit /= 10) {
-        const uint64_t fewer = rounded_further(&all, *digits, unit);
-        if (!reads_back(&all, fewer, m == (uint64_t)1 << 52)) continue;
-        *digits = fewer;
-        if (fewer == 100000000000000000) *digits /= 10, ++*power;
-        break;
-    }
-    return true;
 }
 #else
 static bool digits_of(double value, uint64_t *digits, int *power) {

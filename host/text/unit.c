@@ -181,6 +181,8 @@ bool unit_is(const char *name, const char *unit) {
     return false;
 }
 
+bool unit_temperature(const char *name) { return unit_is(name, "K") || unit_is(name, "C"); }
+
 bool unit_none(const char *name) { return !*name || strcmp(name, "-") == 0 || strcmp(name, "1") == 0; }
 
 bool unit_factor(const char *name, const char *wanted, double *factor) {

@@ -19,6 +19,9 @@ bool unit_behind(const char *name, size_t *bare, const char **unit, size_t *leng
 /* Whether a name means K, or C, which have several names. */
 bool unit_is(const char *name, const char *unit);
 
+/* Whether a name means K or C. */
+bool unit_temperature(const char *name);
+
 /* Whether a name says that there is no unit: "", "-" or "1". */
 bool unit_none(const char *name);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "text/text.h"
 
@@ -140,19 +141,16 @@ static int write_alone(const struct outputs *outputs, size_t k, const struct con
     if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "the name is too long");
     int status = check_others(outputs, k, path);
     if (!status) status = output_open(&file, path);
-    if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what, true);
+    if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what);
     return output_close(&file, status);
 }
 
 /* Notes a frame of a series, for write_collection. */
 static int note_frame(struct outputs *outputs, const struct contents *what) {
     if (!what->series && !what->time) return STATUS_OK;
-    if (outputs->frames == outputs->room) {
-        const size_t room = 2 * outputs->room + 64;
-        struct written *frame = realloc(outputs->frame, room * sizeof *frame);
-        if (!frame) return message_memory();
-        outputs->frame = frame, outputs->room = room;
-    }
+    bool good = true;
+    outputs->frame = memory_grown(outputs->frame, outputs->frames, sizeof *outputs->frame, &good);
+    if (!good) return message_memory();
     outputs->frame[outputs->frames++] = (struct written){.number = what->bed->frame,
                                                          .time = what->time ? *what->time : (double)what->bed->timestep,
                                                          .known = what->time || what->bed->timestep >= 0};
@@ -160,14 +158,17 @@ static int note_frame(struct outputs *outputs, const struct contents *what) {
 }
 
 int outputs_write(struct outputs *outputs, const struct contents *what) {
+    struct contents own = *what;
     int status = note_frame(outputs, what);
     for (size_t k = 0; k < outputs->count && !status; ++k) {
         if (outputs->to[k].star) {
-            status = write_alone(outputs, k, what, what->bed->frame);
+            own.first = true;
+            status = write_alone(outputs, k, &own, what->bed->frame);
             continue;
         }
         struct output *file = &outputs->to[k].file;
-        status = outputs->to[k].format->write[outputs->content](file->file, what, !outputs->to[k].begun);
+        own.first = !outputs->to[k].begun;
+        status = outputs->to[k].format->write[outputs->content](file->file, &own);
         if (!status) status = output_flush(file);
         outputs->to[k].begun = true;
     }
@@ -211,7 +212,7 @@ int outputs_close(struct outputs *outputs, int status) {
             status = write_collection(outputs, outputs->to[k].path, outputs->to[k].star);
     for (size_t k = 0; k < outputs->count; ++k) status = output_close(&outputs->to[k].file, status);
     free(outputs->frame);
-    outputs->frame = NULL, outputs->frames = outputs->room = 0;
+    outputs->frame = NULL, outputs->frames = 0;
     return output_close(&outputs->summary_file, status);
 }
 

@@ -43,7 +43,7 @@ struct outputs {
     const char *summary, *picture; /* paths of --json and --plot; NULL: not given */
     struct output summary_file;
     struct written *frame; /* [frames] */
-    size_t frames, room;
+    size_t frames;
 };
 
 /* Rows of a table of options, without braces. help: of -o. */

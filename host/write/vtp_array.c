@@ -46,9 +46,13 @@ void base64_end(struct base64 *to) {
     fputs("\n</DataArray>\n", to->file);
 }
 
-void vtp_counts(FILE *file, const char *name, const int64_t *values, uint32_t n) {
-    struct base64 to = base64_begin(file, "Int64", name, 1, n);
-    for (uint32_t i = 0; i < n; ++i) base64_whole(&to, values[i]);
+void vtp_points(FILE *file, const double *x, const double *y, const double *z, size_t stride, uint32_t n) {
+    struct base64 to = base64_begin(file, "Float64", "Points", 3, 3 * (uint64_t)n);
+    for (size_t at = 0; at < n * stride; at += stride) {
+        base64_double(&to, x[at]);
+        base64_double(&to, y[at]);
+        base64_double(&to, z[at]);
+    }
     base64_end(&to);
 }
 

@@ -26,8 +26,10 @@ void base64_double(struct base64 *to, double value);
 void base64_whole(struct base64 *to, int64_t value);
 void base64_end(struct base64 *to);
 
-/* Write an array of whole numbers, given or first, first + step ... */
-void vtp_counts(FILE *file, const char *name, const int64_t *values, uint32_t n);
+/* Writes points, whose coordinates lie `stride` apart. */
+void vtp_points(FILE *file, const double *x, const double *y, const double *z, size_t stride, uint32_t n);
+
+/* Writes an array of whole numbers: first, first + step ... */
 void vtp_ascending(FILE *file, const char *name, uint32_t n, int64_t first, int64_t step);
 
 #endif

@@ -26,6 +26,7 @@ struct contents {
     const struct walls *walls; /* NULL: neither walls nor surroundings are written. kind 0: nothing is known of the
                                 * wall, only that there is one */
     const char *file;          /* for a column of the names of several files; NULL: one file */
+    bool first;                /* nothing is in the file so far */
     bool series;               /* with columns frame and timestep, for several frames */
     const double *time;        /* [s] for a column of several times; NULL: one time */
 
@@ -44,9 +45,9 @@ struct contents {
     const struct conduction *conduction;
 };
 
-/* Writes one frame. first: the file is empty. The caller checks the file for errors. Status 0, STATUS_MEMORY or that of
+/* Writes one frame. The caller checks the file for errors. Status 0, STATUS_MEMORY or that of
  * a signal. */
-typedef int write_function(FILE *file, const struct contents *what, bool first);
+typedef int write_function(FILE *file, const struct contents *what);
 
 write_function write_csv, write_mtx, write_npz, write_vtp, write_json;
 write_function write_conduction_csv, write_conduction_json;
@@ -57,15 +58,20 @@ write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 enum { WALL_NAME = MESH_NAME };
 const char *contents_wall(const struct contents *what, uint32_t k, char name[WALL_NAME]);
 
-/* Names of columns of spheres that conduct, and the values of one of them. */
-#define INSIDE_NAMES  "T_min_K", "T_max_K", "T_surface_error_K", "T_centre_K", "T_centre_error_K"
-#define INSIDE_HEADER ",T_min_K,T_max_K,T_surface_error_K,T_centre_K,T_centre_error_K"
-enum { INSIDE_COLUMNS = 5 };
-static inline const double *contents_inside(const struct contents *what, size_t column) {
-    const fibrad_heat_result *r = what->result;
-    const double *const of[INSIDE_COLUMNS] = {r->least_temperature, r->largest_temperature, r->surface_error,
-                                              r->centre_temperature, r->centre_error};
-    return of[column];
+/* A column of the heat of spheres: a value, less another one. */
+struct heat_column {
+    const char *name;
+    const double *value, *less; /* [n]; value NULL: there is no such column; less NULL: nothing is subtracted */
+};
+
+/* Columns from HEAT_INSIDE on belong to spheres that conduct, those from HEAT_LIGHT on to light from outside, those
+ * from HEAT_PARTS on are parts of the power. */
+enum { HEAT_TEMPERATURE, HEAT_POWER, HEAT_INSIDE = 4, HEAT_LIGHT = 9, HEAT_PARTS = 11, HEAT_COLUMNS = 13 };
+void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]);
+
+/* The value of sphere i. */
+static inline double heat_value(const struct heat_column *column, uint32_t i) {
+    return column->less ? column->value[i] - column->less[i] : column->value[i];
 }
 
 /* Extremes, means and errors of the rows that were computed. */

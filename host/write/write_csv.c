@@ -3,7 +3,6 @@
  *
  * Numbers below 0 are not spheres, and the column wall has their names: -1 is the surroundings, -2, -3 ... are walls,
  * and the next number is `beyond`. */
-#include <gsl/gsl_math.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -41,13 +40,13 @@ static char *put_comma(char *to) {
     return to + 1;
 }
 
-/* Begins the lines of a frame. If the file is empty (first), writes the header. names: of the columns. */
-static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, const char *names, bool first) {
+/* Begins the lines of a frame. If the file is empty, writes the header. names: of the columns. */
+static void begin_csv(struct csv *csv, FILE *file, const struct contents *what, const char *names) {
     const struct bed *bed = what->bed;
     char *at = csv->line;
     csv->file = file;
     csv->what = what;
-    if (first)
+    if (what->first)
         fprintf(file, "%s%s%s%s%s\n", what->file ? "file," : "", what->series ? "frame,timestep," : "",
                 what->time ? "time_s," : "", names, csv->named ? ",body" : "");
     if (what->file) at = put_comma(put_text(at, what->file));
@@ -124,10 +123,10 @@ static int write_walls(struct csv *csv) {
     return STATUS_OK;
 }
 
-int write_csv(FILE *file, const struct contents *what, bool first) {
+int write_csv(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     struct csv csv = {.named = what->walls};
-    begin_csv(&csv, file, what, what->grey ? "i,j,D" : "i,j,F", first);
+    begin_csv(&csv, file, what, what->grey ? "i,j,D" : "i,j,F");
     for (uint32_t i = 0; i < matrix->n; ++i) {
         if (interrupt_status()) return interrupt_status();
         for (uint64_t k = matrix->start[i]; k < matrix->start[i + 1]; ++k)
@@ -140,71 +139,58 @@ int write_csv(FILE *file, const struct contents *what, bool first) {
 /* Puts a number. NaN: puts nothing. */
 static char *put_error(char *to, double error) { return isnan(error) ? to : text_real(to, error); }
 
-/* Puts the columns of a sphere that conducts. i = UINT32_MAX: the line belongs to a wall or the surroundings. */
-static char *put_inside(char *at, const struct contents *what, uint32_t i) {
-    for (size_t k = 0; k < INSIDE_COLUMNS && what->result->least_temperature; ++k) {
+/* Writes a line of heat. Errors that are not known and columns that walls do not have are empty. */
+static void write_power(struct csv *csv, int64_t name, const char *wall, const struct heat_column *column,
+                        const double value[HEAT_COLUMNS]) {
+    char *at = text_whole(csv->line + csv->columns, name);
+    for (int k = 0; k < HEAT_COLUMNS; ++k) {
+        if (!column[k].value) continue;
         at = put_comma(at);
-        if (i < UINT32_MAX) at = put_error(at, contents_inside(what, k)[i]);
+        at = k > HEAT_POWER && k < HEAT_LIGHT ? put_error(at, value[k]) : text_real(at, value[k]);
     }
-    return at;
-}
-
-/* i: index of a sphere, or UINT32_MAX. light[2]: light from outside that is absorbed, first and in all. conducted: part
- * of the power. */
-static void write_power(struct csv *csv, int64_t name, uint32_t i, const char *wall, double temperature, double power,
-                        double power_error, double temperature_error, const double light[2], double conducted) {
-    char *at = put_comma(text_whole(csv->line + csv->columns, name));
-    at = put_comma(text_real(at, temperature));
-    at = put_comma(text_real(at, power));
-    at = put_comma(put_error(at, power_error));
-    at = put_inside(put_error(at, temperature_error), csv->what, i);
-    for (int k = 0; k < 2 && csv->what->light; ++k) at = text_real(put_comma(at), light[k]);
-    if (csv->what->result->conducted) at = text_real(put_comma(at), power - conducted);
-    if (csv->what->result->conducted) at = text_real(put_comma(at), conducted);
     end_line(csv, at, wall);
 }
 
-int write_heat_csv(FILE *file, const struct contents *what, bool first) {
+/* The columns of a wall or of the surroundings. light: first absorbed, and in all. conducted: part of the power. */
+static void write_wall_power(struct csv *csv, int64_t name, const char *wall, const struct heat_column *column,
+                             const double heat[4], const double light[2], double conducted) {
+    const double value[HEAT_COLUMNS] = {heat[0],  heat[1], heat[2], heat[3],  NAN,      NAN,
+                                        NAN,      NAN,     NAN,     light[0], light[1], heat[1] - conducted,
+                                        conducted};
+    write_power(csv, name, wall, column, value);
+}
+
+int write_heat_csv(FILE *file, const struct contents *what) {
     const double surroundings = what->sources->surroundings;
-    const fibrad_heat_result *result = what->result;
-    struct csv csv = {.named = true};
-    char name[WALL_NAME];
+    const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
-    double of_light[2] = {0, 0};
-    char columns[200];
-    snprintf(columns, sizeof columns, "i,T_K,q_W,q_error_W,T_error_K%s%s%s",
-             result->least_temperature ? INSIDE_HEADER : "", light ? ",absorbed_first_W,absorbed_W" : "",
-             result->conducted ? ",q_radiation_W,q_conduction_W" : "");
-    begin_csv(&csv, file, what, columns, first);
+    struct csv csv = {.named = true};
+    struct heat_column column[HEAT_COLUMNS];
+    char wall[WALL_NAME], names[200] = "i";
+    double value[HEAT_COLUMNS] = {0}, of_light[2] = {0, 0};
+    heat_columns(what, column);
+    for (int k = 0; k < HEAT_COLUMNS; ++k)
+        if (column[k].value) strcat(strcat(names, ","), column[k].name);
+    begin_csv(&csv, file, what, names);
     for (uint32_t i = 0; i < what->bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
-        if (light) of_light[0] = light->absorbed_first[i], of_light[1] = light->absorbed[i];
-        write_power(&csv, bed_name(what->bed, i), i, "", result->temperature[i], result->power[i],
-                    result->power_error[i], result->temperature_error[i], of_light,
-                    result->conducted ? result->conducted[i] : 0);
+        for (int k = 0; k < HEAT_COLUMNS; ++k)
+            if (column[k].value) value[k] = heat_value(&column[k], i);
+        write_power(&csv, bed_name(what->bed, i), "", column, value);
     }
     if (!what->walls) return STATUS_OK;
     if (light) of_light[0] = light->transmitted, of_light[1] = light->transmitted + light->reflected;
     if (!isnan(surroundings))
-        write_power(&csv, SURROUNDINGS, UINT32_MAX, "surroundings", surroundings, result->surroundings_power,
-                    result->surroundings_error, 0, of_light, 0);
+        write_wall_power(&csv, SURROUNDINGS, "surroundings", column,
+                         (const double[]){surroundings, r->surroundings_power, r->surroundings_error, 0}, of_light, 0);
     for (uint32_t k = 0; k < what->walls->count; ++k) {
         if (light) of_light[0] = light->wall_absorbed_first[k], of_light[1] = light->wall_absorbed[k];
-        write_power(&csv, FIRST_WALL - (int64_t)k, UINT32_MAX, contents_wall(what, k, name),
-                    result->wall_temperature[k], result->wall_power[k], result->wall_error[k],
-                    result->wall_temperature_error[k], of_light, result->conducted ? result->wall_conducted[k] : 0);
+        write_wall_power(
+            &csv, FIRST_WALL - (int64_t)k, contents_wall(what, k, wall), column,
+            (const double[]){r->wall_temperature[k], r->wall_power[k], r->wall_error[k], r->wall_temperature_error[k]},
+            of_light, r->conducted ? r->wall_conducted[k] : 0);
     }
     return STATUS_OK;
-}
-
-/* The conductivities of a bed with contacts along an axis; empty if they were not computed. */
-static char *put_total(char *at, const struct conduction_plates *plates) {
-    const struct conduction_value *const of[] = {&plates->both, &plates->radiation, &plates->conduction};
-    for (int k = 0; k < 3; ++k) {
-        at = put_error(put_comma(at), plates->touches ? of[k]->k : NAN);
-        at = put_error(put_comma(at), plates->touches ? of[k]->error : NAN);
-    }
-    return at;
 }
 
 #define TOTAL_COLUMNS                                                                                                  \
@@ -213,31 +199,33 @@ static char *put_total(char *at, const struct conduction_plates *plates) {
 #define CONDUCTION_COLUMNS                                                                                             \
     "axis,F_E,F_E_error,k_W_mK,k_W_mK_error,reliable,F_E_steady,F_E_steady_error,k_star,T_K,warning"
 
-int write_conduction_csv(FILE *file, const struct contents *what, bool first) {
+int write_conduction_csv(FILE *file, const struct contents *what) {
     const struct conduction *conduction = what->conduction;
-    const bool contacts = conduction_contacts(conduction);
+    const bool contacts = conduction_contacts(conduction), hot = !isnan(conduction->temperature);
     struct csv csv = {0};
-    begin_csv(&csv, file, what, contacts ? CONDUCTION_COLUMNS TOTAL_COLUMNS : CONDUCTION_COLUMNS, first);
+    begin_csv(&csv, file, what, contacts ? CONDUCTION_COLUMNS TOTAL_COLUMNS : CONDUCTION_COLUMNS);
     for (int axis = 0; axis < 3; ++axis) {
         if (!conduction_wants(conduction, axis)) continue;
+        const struct conduction_plates *plates = &conduction->plates[axis];
+        const struct conduction_value *const total[] = {&plates->both, &plates->radiation, &plates->conduction};
+        const bool steady = plates->spheres > 0;
+        const char *doubt = conduction_doubt(conduction, axis);
         char *at = csv.line + csv.columns;
         *at++ = (char)('x' + axis);
         at = text_real(put_comma(at), conduction->factor[axis]);
         at = text_real(put_comma(at), conduction->error[axis]);
-        at = put_comma(at);
-        if (!isnan(conduction->temperature)) at = text_real(at, conduction->k[axis]);
-        at = put_comma(at);
-        if (!isnan(conduction->temperature)) at = text_real(at, conduction->k_error[axis]);
-        at = put_comma(at);
+        at = hot ? text_real(put_comma(at), conduction->k[axis]) : put_comma(at);
+        at = put_comma(hot ? text_real(put_comma(at), conduction->k_error[axis]) : put_comma(at));
         *at++ = conduction_flights(conduction, axis) == FLIGHTS_SETTLED ? '1' : '0';
-        const struct conduction_plates *plates = &conduction->plates[axis];
-        at = put_error(put_comma(at), plates->spheres > 0 ? plates->factor.k : NAN);
-        at = put_error(put_comma(at), plates->spheres > 0 ? plates->factor.error : NAN);
+        at = put_error(put_comma(at), steady ? plates->factor.k : NAN);
+        at = put_error(put_comma(at), steady ? plates->factor.error : NAN);
         at = put_error(put_comma(at), k_star_mean(&conduction->k_star));
         at = put_error(put_comma(at), conduction->temperature);
-        const char *doubt = conduction_doubt(conduction, axis);
         at = put_text(put_comma(at), doubt ? doubt : "");
-        if (contacts) at = put_total(at, plates);
+        for (int k = 0; k < 3 && contacts; ++k) { /* empty if they were not computed */
+            at = put_error(put_comma(at), plates->touches ? total[k]->k : NAN);
+            at = put_error(put_comma(at), plates->touches ? total[k]->error : NAN);
+        }
         end_line(&csv, at, "");
     }
     return STATUS_OK;

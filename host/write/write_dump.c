@@ -24,25 +24,22 @@ static void write_header(FILE *file, const struct bed *bed, bool conducts, bool 
             bed->kept_names ? " " : "", bed->kept_names ? bed->kept_names : "");
 }
 
-int write_heat_dump(FILE *file, const struct contents *what, bool first) {
+int write_heat_dump(FILE *file, const struct contents *what) {
     const struct bed *bed = what->bed;
-    const double *power = what->result->power, *conducted = what->result->conducted;
+    struct heat_column column[HEAT_COLUMNS];
+    heat_columns(what, column);
+    const bool conducted = column[HEAT_PARTS].value;
     char line[10 * TEXT_NUMBER];
-    write_header(file, bed, conducted, first);
+    write_header(file, bed, conducted, what->first);
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
-        const double of_contacts = conducted ? conducted[i] : 0, values[] = {bed->x[i],
-                                                                             bed->y[i],
-                                                                             bed->z[i],
-                                                                             bed->r[i],
-                                                                             what->result->temperature[i],
-                                                                             power[i],
-                                                                             power[i] - of_contacts,
-                                                                             of_contacts};
+        double value[8] = {
+            bed->x[i], bed->y[i], bed->z[i], bed->r[i], what->result->temperature[i], what->result->power[i]};
+        for (int k = 0; k < 2 && conducted; ++k) value[6 + k] = heat_value(&column[HEAT_PARTS + k], i);
         char *at = text_whole(line, bed_name(bed, i));
         for (size_t k = 0; k < (conducted ? 8 : 6); ++k) {
             *at++ = ' ';
-            at = text_real(at, values[k]);
+            at = text_real(at, value[k]);
         }
         fwrite(line, 1, (size_t)(at - line), file);
         if (bed->kept_names) fprintf(file, " %s", bed->kept + bed->kept_at[i]);

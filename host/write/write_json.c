@@ -77,12 +77,11 @@ static void json_wall_rows(FILE *file, const struct contents *what) {
 }
 
 /* Writes the matrix in compressed rows, the form of SciPy's csr_array((data, indices, indptr)). */
-int write_json(FILE *file, const struct contents *what, bool first) {
+int write_json(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t entries = matrix->start[matrix->n];
     const uint32_t walls = what->walls ? what->walls->count : 0;
     char name[WALL_NAME];
-    (void)first;
     json_begin(file, what, what->grey ? "exchange factors" : "view factors");
     fputs(",\"indptr\":[0", file);
     for (uint32_t i = 1; i <= matrix->n; ++i) fprintf(file, ",%" PRIu64, matrix->start[i]);
@@ -107,12 +106,11 @@ int write_json(FILE *file, const struct contents *what, bool first) {
     return interrupt_status();
 }
 
-/* An array of a - b. */
-static void json_difference(FILE *file, const char *name, const double *a, const double *b, uint32_t n) {
-    fprintf(file, ",\"%s\":[", name);
-    for (uint32_t i = 0; i < n; ++i) {
+static void json_column(FILE *file, const struct heat_column *column, uint32_t n) {
+    fprintf(file, ",\"%s\":[", column->name);
+    for (uint32_t i = 0; i < n && !interrupt_status(); ++i) {
         if (i > 0) putc(',', file);
-        text_json_real(file, a[i] - b[i]);
+        text_json_real(file, heat_value(column, i));
     }
     putc(']', file);
 }
@@ -130,23 +128,17 @@ static void json_power(FILE *file, const char *comma, const char *name, double t
     putc('}', file);
 }
 
-int write_heat_json(FILE *file, const struct contents *what, bool first) {
+int write_heat_json(FILE *file, const struct contents *what) {
     const double surroundings = what->sources->surroundings;
     const fibrad_heat_result *result = what->result;
     const uint32_t walls = what->walls ? what->walls->count : 0, n = what->bed->n;
+    static const int order[HEAT_COLUMNS] = {0, 1, 2, 3, 9, 10, 11, 12, 4, 5, 6, 7, 8}; /* insides come last */
+    struct heat_column column[HEAT_COLUMNS];
     char name[WALL_NAME];
-    (void)first;
     json_begin(file, what, "heat");
-    json_reals(file, ",", "T_K", result->temperature, n, 1, NULL);
-    json_reals(file, ",", "q_W", result->power, n, 1, NULL);
-    json_reals(file, ",", "q_error_W", result->power_error, n, 1, NULL);
-    json_reals(file, ",", "T_error_K", result->temperature_error, n, 1, NULL);
-    if (what->light) json_reals(file, ",", "absorbed_first_W", what->light->absorbed_first, n, 1, NULL);
-    if (what->light) json_reals(file, ",", "absorbed_W", what->light->absorbed, n, 1, NULL);
-    if (result->conducted) json_difference(file, "q_radiation_W", result->power, result->conducted, n);
-    if (result->conducted) json_reals(file, ",", "q_conduction_W", result->conducted, n, 1, NULL);
-    for (size_t k = 0; k < INSIDE_COLUMNS && result->least_temperature; ++k)
-        json_reals(file, ",", (const char *[]){INSIDE_NAMES}[k], contents_inside(what, k), n, 1, NULL);
+    heat_columns(what, column);
+    for (int k = 0; k < HEAT_COLUMNS; ++k)
+        if (column[order[k]].value) json_column(file, &column[order[k]], n);
     if (what->walls && !isnan(surroundings))
         json_power(file, ",", "surroundings", surroundings, result->surroundings_power, result->surroundings_error, 0,
                    NULL);
@@ -171,10 +163,9 @@ static void json_plates(FILE *file, const struct conduction_plates *plates) {
     }
 }
 
-int write_conduction_json(FILE *file, const struct contents *what, bool first) {
+int write_conduction_json(FILE *file, const struct contents *what) {
     const struct conduction *conduction = what->conduction;
     const char *comma = "";
-    (void)first;
     json_frame(file, what, "conduction");
     if (!isnan(conduction->temperature)) json_entry(file, "T_K", conduction->temperature);
     if (conduction->k_star.spheres > 0) {

@@ -17,10 +17,9 @@ static void write_ids(FILE *file, const struct bed *bed) {
     if (bed->n > 0) putc('\n', file);
 }
 
-int write_mtx(FILE *file, const struct contents *what, bool first) {
+int write_mtx(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     char line[3 * TEXT_NUMBER];
-    (void)first;
     fputs("%%MatrixMarket matrix coordinate real general\n", file);
     fprintf(file, "%% %s from sphere i to sphere j, fibrad %s\n",
             what->grey ? "Exchange factors D_ij" : "View factors F_ij", fibrad_version());

@@ -39,21 +39,19 @@ static void put_all(FILE *file, const struct little *fields, size_t n) {
     put_all(file, (const struct little[]){__VA_ARGS__},                                                                \
             sizeof(const struct little[]){__VA_ARGS__} / sizeof(struct little))
 
-static void make_header(const struct member *member, unsigned char header[HEADER]) {
+static void make_header(const struct array *array, unsigned char header[HEADER]) {
     static const char magic[] = "\x93NUMPY\1";
     const uint16_t one = 1;
     const bool little = *(const unsigned char *)&one == 1;
-    const bool bytes = member->array.type[0] == 'S' || member->array.type[1] == '1';
+    const bool bytes = array->type[0] == 'S' || array->type[1] == '1';
     const char order = bytes ? '|' : little ? '<' : '>';
-    char text[HEADER];
-    char shape[48] = "";
-    const struct array *array = &member->array;
+    char text[HEADER], shape[48] = "";
     if (array->length != SCALAR && array->columns > 0)
         snprintf(shape, sizeof shape, "%" PRIu64 ", %" PRIu64, array->length, array->columns);
     else if (array->length != SCALAR)
         snprintf(shape, sizeof shape, "%" PRIu64 ",", array->length);
     const int used = snprintf(text, sizeof text, "{'descr': '%c%s', 'fortran_order': False, 'shape': (%s), }", order,
-                              member->array.type, shape);
+                              array->type, shape);
     memset(header, ' ', HEADER);
     memcpy(header, magic, sizeof magic);
     header[8] = HEADER - 10;
@@ -62,61 +60,47 @@ static void make_header(const struct member *member, unsigned char header[HEADER
     header[HEADER - 1] = '\n';
 }
 
-/* Writes the fields that are the same in local and central headers: version that reads ZIP64, flags, stored, time and
- * date (1 January 1980, so that equal matrices make equal files), checksum, both sizes (they are in the ZIP64 field),
- * and the length of the name. */
-static void put_common(FILE *file, const struct member *member) {
-    PUT(file, {45, 2}, {0, 2}, {0, 2}, {0x00210000, 4}, {member->crc, 4}, {UINT32_MAX, 4}, {UINT32_MAX, 4},
-        {strlen(member->array.name), 2});
+/* Writes the header of a member (entry false) or its entry in the directory: version that reads ZIP64, flags, stored,
+ * time and date (1 January 1980, so that equal matrices make equal files), checksum, both sizes (they are in the ZIP64
+ * field), lengths of the name and of the ZIP64 field. An entry also has comment, disk, attributes, and the offset,
+ * which is in the ZIP64 field, too. Returns the number of bytes. */
+static uint64_t put_header(FILE *file, const struct member *member, bool entry) {
+    const uint64_t size = HEADER + member->bytes, name = strlen(member->array.name);
+    PUT(file, {entry ? 0x02014b50 : 0x04034b50, 4});
+    if (entry) PUT(file, {45, 2});
+    PUT(file, {45, 2}, {0, 2}, {0, 2}, {0x00210000, 4}, {member->crc, 4}, {UINT32_MAX, 4}, {UINT32_MAX, 4}, {name, 2},
+        {entry ? 28 : 20, 2});
+    if (entry) PUT(file, {0, 2}, {0, 2}, {0, 2}, {0, 4}, {UINT32_MAX, 4});
+    fputs(member->array.name, file);
+    PUT(file, {1, 2}, {entry ? 24 : 16, 2}, {size, 8}, {size, 8});
+    if (entry) PUT(file, {member->offset, 8});
+    return name + (entry ? 46 + 28 : 30 + 20);
 }
 
-/* Writes the ZIP64 field, which is `field` bytes long. */
-static void put_sizes(FILE *file, const struct member *member, uint64_t field) {
-    const uint64_t size = HEADER + member->bytes;
-    PUT(file, {1, 2}, {field, 2}, {size, 8}, {size, 8});
-}
-
-static int write_member(FILE *file, struct member *member) {
-    unsigned char header[HEADER];
-    make_header(member, header);
-    uLong crc = crc32_z(0, header, HEADER);
+/* Writes the data of a member; file NULL: adds them to the checksum. */
+static int pass_data(FILE *file, struct member *member) {
     const unsigned char *data = member->array.data;
     for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
+        const uint64_t left = member->bytes - done, size = left < BLOCK ? left : BLOCK;
         if (interrupt_status()) return interrupt_status();
-        const uint64_t left = member->bytes - done;
-        crc = crc32_z(crc, data + done, left < BLOCK ? left : BLOCK);
-    }
-    member->crc = (uint32_t)crc;
-    PUT(file, {0x04034b50, 4});
-    put_common(file, member);
-    PUT(file, {20, 2});
-    fputs(member->array.name, file);
-    put_sizes(file, member, 16);
-    fwrite(header, 1, HEADER, file);
-    for (uint64_t done = 0; done < member->bytes; done += BLOCK) {
-        if (interrupt_status()) return interrupt_status();
-        const uint64_t left = member->bytes - done;
-        if (!fwrite(data + done, left < BLOCK ? left : BLOCK, 1, file)) break; /* the caller checks the file */
+        if (file)
+            fwrite(data + done, size, 1, file); /* the caller checks the file */
+        else
+            member->crc = (uint32_t)crc32_z(member->crc, data + done, size);
     }
     return STATUS_OK;
 }
 
-/* Bytes of a member, and of its entry in the directory. */
-static uint64_t member_size(const struct member *member) {
-    return 30 + strlen(member->array.name) + 20 + HEADER + member->bytes;
-}
-
-static uint64_t entry_size(const struct member *member) { return 46 + strlen(member->array.name) + 28; }
-
-/* Writes an entry of the directory. Behind the length of the ZIP64 field: comment, disk, attributes, and the offset,
- * which is in the ZIP64 field, too. */
-static void put_entry(FILE *file, const struct member *member) {
-    PUT(file, {0x02014b50, 4}, {45, 2});
-    put_common(file, member);
-    PUT(file, {28, 2}, {0, 2}, {0, 2}, {0, 2}, {0, 4}, {UINT32_MAX, 4});
-    fputs(member->array.name, file);
-    put_sizes(file, member, 24);
-    PUT(file, {member->offset, 8});
+static int write_member(FILE *file, struct member *member, uint64_t *offset) {
+    unsigned char header[HEADER];
+    make_header(&member->array, header);
+    member->offset = *offset;
+    member->crc = (uint32_t)crc32_z(0, header, HEADER);
+    const int status = pass_data(NULL, member);
+    if (status) return status;
+    *offset += put_header(file, member, false) + HEADER + member->bytes;
+    fwrite(header, 1, HEADER, file);
+    return pass_data(file, member);
 }
 
 /* Writes the end of the directory in ZIP64, where it is, and the old form with all bits set, which refers to ZIP64. */
@@ -126,14 +110,9 @@ static void put_end(FILE *file, uint64_t members, uint64_t offset, uint64_t size
     PUT(file, {0x06054b50, 4}, {0, 4}, {members, 2}, {members, 2}, {UINT32_MAX, 4}, {UINT32_MAX, 4}, {0, 2});
 }
 
-static struct member make_member(const struct array *array) {
-    const uint64_t each = strtoull(array->type + 1, NULL, 10), columns = array->columns > 0 ? array->columns : 1;
-    return (struct member){.array = *array, .bytes = array->length == SCALAR ? each : each * array->length * columns};
-}
-
-/* The arrays of an archive, and memory of arrays that are made for it. */
+/* The members of an archive, and memory of arrays that are made for it. */
 struct arrays {
-    struct array list[ARRAYS_MAX];
+    struct member list[ARRAYS_MAX];
     size_t count;
     int64_t *position;
     double (*x)[3];
@@ -141,9 +120,12 @@ struct arrays {
 
 /* Adds an array unless it has no data or an array of its name is there. */
 static void add_array(struct arrays *arrays, struct array array) {
+    const uint64_t each = strtoull(array.type + 1, NULL, 10), columns = array.columns > 0 ? array.columns : 1;
     for (size_t k = 0; k < arrays->count; ++k)
-        if (strcmp(arrays->list[k].name, array.name) == 0) return;
-    if (array.data && arrays->count < ARRAYS_MAX) arrays->list[arrays->count++] = array;
+        if (strcmp(arrays->list[k].array.name, array.name) == 0) return;
+    if ((array.data || array.length == 0) && arrays->count < ARRAYS_MAX)
+        arrays->list[arrays->count++] =
+            (struct member){.array = array, .bytes = each * (array.length == SCALAR ? 1 : array.length * columns)};
 }
 
 static int add_spheres(struct arrays *arrays, const struct bed *bed) {
@@ -195,36 +177,28 @@ static void add_rows(struct arrays *arrays, const struct contents *what, char na
     add_array(arrays, (struct array){"wall_error.npy", "f8", matrix->wall_error, walls, 0});
 }
 
-static int write_archive(FILE *file, const struct arrays *arrays) {
-    struct member members[ARRAYS_MAX];
+static int write_archive(FILE *file, struct arrays *arrays) {
     uint64_t offset = 0, directory = 0;
     for (size_t k = 0; k < arrays->count; ++k) {
-        members[k] = make_member(&arrays->list[k]);
-        members[k].offset = offset;
-        const int status = write_member(file, &members[k]);
+        const int status = write_member(file, &arrays->list[k], &offset);
         if (status) return status;
-        offset += member_size(&members[k]);
     }
-    for (size_t k = 0; k < arrays->count; ++k) {
-        put_entry(file, &members[k]);
-        directory += entry_size(&members[k]);
-    }
+    for (size_t k = 0; k < arrays->count; ++k) directory += put_header(file, &arrays->list[k], true);
     put_end(file, arrays->count, offset, directory);
     return STATUS_OK;
 }
 
-int write_npz(FILE *file, const struct contents *what, bool first) {
+int write_npz(FILE *file, const struct contents *what) {
     const fibrad_factors *matrix = &what->factors->matrix;
     const uint64_t n = matrix->n, entries = matrix->start[n];
     const int64_t shape[2] = {matrix->n, matrix->n};
-    struct arrays arrays = {.list = {{"indices.npy", "i4", matrix->col, entries, 0},
-                                     {"indptr.npy", "i8", matrix->start, n + 1, 0},
-                                     {"format.npy", "S3", "csr", SCALAR, 0},
-                                     {"shape.npy", "i8", shape, 2, 0},
-                                     {"data.npy", "f8", matrix->f, entries, 0}},
-                            .count = 5};
+    struct arrays arrays = {.count = 0};
     char names[WALLS_MAX * WALL_NAME];
-    (void)first;
+    add_array(&arrays, (struct array){"indices.npy", "i4", matrix->col, entries, 0});
+    add_array(&arrays, (struct array){"indptr.npy", "i8", matrix->start, n + 1, 0});
+    add_array(&arrays, (struct array){"format.npy", "S3", "csr", SCALAR, 0});
+    add_array(&arrays, (struct array){"shape.npy", "i8", shape, 2, 0});
+    add_array(&arrays, (struct array){"data.npy", "f8", matrix->f, entries, 0});
     for (size_t k = 0; k < what->arrays; ++k) add_array(&arrays, what->array[k]);
     int status = add_spheres(&arrays, what->bed);
     if (!status) add_rows(&arrays, what, names);

@@ -98,8 +98,7 @@ static double value_of(struct vtk_type type, const unsigned char *bytes, bool bi
         return value;
     }
     const uint64_t sign = UINT64_C(1) << (8 * type.size - 1);
-    if (type.kind == 'i' && bits & sign) return -(double)(sign - (bits & (sign - 1)));
-    return (double)bits;
+    return type.kind == 'i' && bits & sign ? -(double)(sign - (bits & (sign - 1))) : (double)bits;
 }
 
 void vtk_convert(struct vtk_type type, bool big, const void *bytes, uint64_t count, double *values) {

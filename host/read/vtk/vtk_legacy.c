@@ -2,14 +2,12 @@
  *
  * Four lines name version, title, ASCII or BINARY, and kind of the data set. Keywords follow, most of them with an
  * array. Binary arrays are big-endian. Arrays that are not wanted are skipped. */
-#include <ctype.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
-#include "text/read_number.h"
 #include "read/vtk/vtk_grid.h"
 
 enum { NAME = 80 };
@@ -25,9 +23,7 @@ struct legacy {
     uint64_t sizes[2]; /* sizes in the last list of cells */
 };
 
-static int legacy_fail(const struct legacy *legacy, const char *what) {
-    return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "%s", what);
-}
+#define legacy_fail(legacy, ...) vtk_fail((legacy)->grid, (legacy)->binary ? NULL : (legacy)->line, __VA_ARGS__)
 
 /* Copies the next line and moves behind it. */
 static void take_line(struct legacy *legacy, char *line, size_t room) {
@@ -55,8 +51,7 @@ static int legacy_array(struct legacy *legacy, const char *type_name, uint64_t c
     const struct vtk_type type = vtk_find_type(type_name);
     const uint64_t left = (uint64_t)(legacy->grid->end - legacy->at);
     if (strcmp(type_name, "bit") != 0 && type.size == 0)
-        return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "arrays of type %.40s cannot be read",
-                        type_name);
+        return legacy_fail(legacy, "arrays of type %.40s cannot be read", type_name);
     const uint64_t size = type.size ? type.size : 1;
     if (count > left || (legacy->binary && count * size > left))
         return legacy_fail(legacy, "the file ends within an array");
@@ -171,7 +166,7 @@ static int take_keyword(struct legacy *legacy, const char *line) {
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; ++k)
         if (strcmp(word, arrays[k].keyword) == 0)
             return take_data(legacy, first, second, arrays[k].components, legacy->tuples);
-    return vtk_fail(legacy->grid, legacy->binary ? NULL : legacy->line, "the keyword %.40s is not known", word);
+    return legacy_fail(legacy, "the keyword %.40s is not known", word);
 }
 
 int vtk_read_legacy(struct vtk_grid *grid) {

@@ -7,7 +7,6 @@
  */
 #include <ctype.h>
 #include <inttypes.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -16,7 +15,7 @@
 #include "text/read_number.h"
 #include "read/vtk/vtk_grid.h"
 
-enum { WORD = 80, PATH = 1000, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
+enum { WORD = 1000, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
 
 struct xml {
     struct vtk_grid *grid;
@@ -45,7 +44,7 @@ struct place {
     bool text, raw;
 };
 
-static int xml_fail(const struct xml *xml, const char *what) { return vtk_fail(xml->grid, xml->at, "%s", what); }
+#define xml_fail(xml, ...) vtk_fail((xml)->grid, (xml)->at, __VA_ARGS__)
 
 static bool is_tag(const struct tag *tag, const char *name) {
     const size_t length = strlen(name);
@@ -70,24 +69,20 @@ static bool next_tag(struct xml *xml, struct tag *tag) {
     return false;
 }
 
-/* The value of an attribute, of at most room - 1 characters. "": the tag does not have the attribute. */
-static const char *long_attribute(const struct tag *tag, const char *name, char *value, size_t room) {
+/* The value of an attribute, of at most WORD - 1 characters. "": the tag does not have the attribute. */
+static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
     const size_t length = strlen(name);
     value[0] = 0;
     for (const char *c = tag->text; c + length + 2 < tag->end; ++c) {
         if (!isspace((unsigned char)*c) || memcmp(c + 1, name, length) != 0 || c[length + 1] != '=') continue;
         const char *from = c + length + 3;
         size_t size = 0;
-        while (from + size < tag->end && from[size] != from[-1] && size < room - 1) ++size;
+        while (from + size < tag->end && from[size] != from[-1] && size < WORD - 1) ++size;
         memcpy(value, from, size);
         value[size] = 0;
         break;
     }
     return value;
-}
-
-static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
-    return long_attribute(tag, name, value, WORD);
 }
 
 static uint64_t number_of(const struct tag *tag, const char *name, uint64_t otherwise) {
@@ -223,20 +218,19 @@ static int xml_file(struct xml *xml, const struct tag *tag) {
     attribute(tag, "compressor", value);
     xml->packed = *value != 0;
     if (xml->packed && strcmp(value, "vtkZLibDataCompressor") != 0)
-        return vtk_fail(xml->grid, xml->at, "its arrays are packed by %.40s; only arrays packed by zlib can be read",
-                        value);
+        return xml_fail(xml, "its arrays are packed by %.40s; only arrays packed by zlib can be read", value);
     return STATUS_OK;
 }
 
 /* Ends the piece before, and begins another one. */
 static int take_piece(struct xml *xml, const struct tag *tag) {
     const uint64_t n = number_of(tag, "NumberOfPoints", 0), most = (uint64_t)(xml->grid->end - xml->grid->text);
-    char source[PATH];
+    char source[WORD];
     const int status = xml->within ? vtk_end_piece(xml->grid) : STATUS_OK;
     xml->within = !xml->parallel;
     if (status) return status;
     if (xml->parallel) {
-        if (!*long_attribute(tag, "Source", source, sizeof source)) return xml_fail(xml, "a piece has no Source");
+        if (!*attribute(tag, "Source", source)) return xml_fail(xml, "a piece has no Source");
         return xml->grid->open(source, xml->grid->context);
     }
     if (n > UINT32_MAX) return xml_fail(xml, "too many points");
@@ -255,12 +249,12 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
     double *values = NULL;
     if (xml->grid->n == 0 || !(xml->points || vtk_wants(xml->grid, name))) return STATUS_OK;
     if (components != (xml->points ? 3 : 1))
-        return vtk_fail(xml->grid, xml->at, "the array %.40s has %" PRIu64 " components", name, components);
+        return xml_fail(xml, "the array %.40s has %" PRIu64 " components", name, components);
     struct place place = {.type = vtk_find_type(attribute(tag, "type", type)),
                           .count = components * xml->grid->n,
                           .at = xml->at,
                           .text = strcmp(format, "ascii") == 0};
-    if (place.type.size == 0) return vtk_fail(xml->grid, xml->at, "arrays of type %.40s cannot be read", type);
+    if (place.type.size == 0) return xml_fail(xml, "arrays of type %.40s cannot be read", type);
     if (strcmp(format, "appended") == 0) {
         const uint64_t offset = number_of(tag, "offset", UINT64_MAX);
         if (!xml->appended || offset > (uint64_t)(xml->grid->end - xml->appended))
