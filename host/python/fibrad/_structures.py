@@ -9,6 +9,18 @@ EmissivityLaw: Any = CFUNCTYPE(None, c_void_p, POINTER(c_double), POINTER(c_doub
 Observe: Any = CFUNCTYPE(None, c_void_p, c_double, POINTER(c_double))
 
 
+class HeatSources(Structure):
+    _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
+                ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
+                ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
+                ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
+                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
+                ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
+                ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
+                ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
+                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("contact_places", POINTER(c_double))]
+
+
 class Plane(Structure):
     _fields_ = [("axis", c_int), ("upper", c_int), ("at", c_double)]
 
@@ -43,31 +55,45 @@ class Spheres(Structure):
                 ("n", c_uint32), ("stride", c_uint32), ("stride_r", c_uint32), ("id", POINTER(c_uint64))]
 
 
-class BeamRule(Structure):
-    _fields_ = [("directions", c_uint32), ("points", c_uint32), ("cutoff", c_double), ("tolerance", c_double),
-                ("turn", c_uint64), ("lines", c_void_p), ("chords", c_uint32)]
-
-
-class SurfaceRule(Structure):
-    _fields_ = [("nodes", c_uint32), ("flags", c_uint32), ("cutoff", c_double), ("isa", c_int)]
-
-
-class CastRule(Structure):
-    _fields_ = [("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double)]
-
-
-class BedOptions(Structure):
-    _fields_ = [("beam", POINTER(BeamRule)), ("surface", POINTER(SurfaceRule)), ("cast", POINTER(CastRule)),
-                ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double), ("walls", c_int),
-                ("scratch", c_char_p)]
-
-
 class Fault(Structure):
     _fields_ = [("first", c_uint32), ("second", c_uint32), ("triangle", c_uint32), ("wall", c_uint32), ("why", c_int)]
 
 
 class Run(Structure):
     _fields_ = [("threads", c_int), ("progress", Progress), ("context", c_void_p), ("fault", Fault)]
+
+
+class SceneFacts(Structure):
+    _fields_ = [("spheres", c_uint32), ("walls", c_uint32), ("isa", c_int), ("cells", c_uint32),
+                ("radius_min", c_double), ("radius_max", c_double), ("overlap_max", c_double),
+                ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32)]
+
+
+class Warning(Structure):
+    _fields_ = [("code", c_int), ("first", c_uint32), ("second", c_uint32), ("wall", c_uint32), ("count", c_uint32),
+                ("value", c_double), ("other", c_double)]
+
+
+class BeamRule(Structure):
+    _fields_ = [("directions", c_uint32), ("points", c_uint32), ("cutoff", c_double), ("tolerance", c_double),
+                ("turn", c_uint64), ("lines", c_void_p), ("chords", c_uint32)]
+
+
+class CastRule(Structure):
+    _fields_ = [("rays", c_uint32), ("random", c_int), ("seed", c_uint64), ("cutoff", c_double)]
+
+
+class ExchangeRule(Structure):
+    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)), ("directions", c_uint32),
+                ("paths", c_uint32), ("seed", c_uint64), ("cutoff", c_double), ("tolerance", c_double),
+                ("node_emissivity", POINTER(c_double)), ("open_error", c_double), ("conductivity", POINTER(c_double)),
+                ("known", POINTER(c_double)), ("known_paths", c_double)]
+
+
+class BedRule(Structure):
+    _fields_ = [("beam", POINTER(BeamRule)), ("cast", POINTER(CastRule)), ("exchange", POINTER(ExchangeRule)),
+                ("wanted", POINTER(c_ubyte)), ("raw", c_int), ("drop", c_double), ("walls", c_int),
+                ("scratch", c_char_p)]
 
 
 class Factors(Structure):
@@ -78,23 +104,10 @@ class Factors(Structure):
                 ("wall_closure", c_double), ("changed", c_double), ("changed_row", c_uint32)]
 
 
-class SceneFacts(Structure):
-    _fields_ = [("spheres", c_uint32), ("walls", c_uint32), ("isa", c_int), ("cells", c_uint32),
-                ("radius_min", c_double), ("radius_max", c_double), ("overlap_max", c_double),
-                ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32)]
-
-
-class BedFactors(Structure):
+class BedMatrix(Structure):
     _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("wall_area", POINTER(c_double)), ("threads", c_int),
                 ("directions", c_uint32), ("fallbacks", c_uint64), ("rays", c_uint64), ("seconds", c_double),
                 ("closure_error", c_double), ("reciprocity_error", c_double)]
-
-
-class ExchangeRule(Structure):
-    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)), ("directions", c_uint32),
-                ("paths", c_uint32), ("seed", c_uint64), ("cutoff", c_double), ("tolerance", c_double),
-                ("node_emissivity", POINTER(c_double)), ("open_error", c_double), ("conductivity", POINTER(c_double)),
-                ("known", POINTER(c_double)), ("known_paths", c_double)]
 
 
 class WallRule(Structure):
@@ -108,34 +121,14 @@ class WallRow(Structure):
                 ("rays", c_uint64), ("paths", c_uint64)]
 
 
-class SideView(Structure):
-    _fields_ = [("spheres", c_double), ("walls", c_double), ("escaped", c_double)]
-
-
-class DisplacementRule(Structure):
-    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
-                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64)]
-
-
-class Displacement(Structure):
-    _fields_ = [("square", c_double * 3), ("error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64)]
-
-
 class HeatConfig(Structure):
     _fields_ = [("directions", c_uint32), ("points", c_uint32), ("patches", c_uint32), ("parts", c_uint32),
                 ("wall_rays", c_uint32)]
 
 
-class HeatSources(Structure):
-    _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
-                ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
-                ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
-                ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
-                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
-                ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
-                ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
-                ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
-                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("contact_places", POINTER(c_double))]
+class Law(Structure):
+    _fields_ = [("follow", EmissivityLaw), ("context", c_void_p), ("emissivity", POINTER(c_double)),
+                ("wall_emissivity", POINTER(c_double))]
 
 
 class HeatResult(Structure):
@@ -160,7 +153,7 @@ class Light(Structure):
 
 class LightSources(Structure):
     _fields_ = [("light", POINTER(Light)), ("lights", c_uint32), ("absorptivity", POINTER(c_double)),
-                ("wall_absorptivity", POINTER(c_double)), ("tolerance", c_double), ("uniform", c_int)]
+                ("wall_absorptivity", POINTER(c_double)), ("tolerance", c_double)]
 
 
 class LightResult(Structure):
@@ -171,16 +164,12 @@ class LightResult(Structure):
                 ("error_patches", c_double), ("sweeps", c_uint32), ("lights", c_uint32), ("patches", POINTER(c_double))]
 
 
-class TransientConfig(Structure):
-    _fields_ = [("method", c_int), ("exchange", ExchangeRule), ("heat", HeatConfig)]
-
-
 class Span(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("capacity", POINTER(c_double)), ("duration", c_double),
                 ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)), ("step", c_double),
                 ("tolerance", c_double), ("power", POINTER(c_double)), ("wall_power", POINTER(c_double)),
                 ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)), ("surroundings_energy", c_double),
-                ("observe", Observe), ("law", EmissivityLaw), ("context", c_void_p), ("error", c_double),
+                ("law", POINTER(Law)), ("observe", Observe), ("context", c_void_p), ("error", c_double),
                 ("steps", c_uint64), ("refused", c_uint64), ("sweeps", c_uint64), ("corrections", c_uint64)]
 
 
@@ -196,17 +185,15 @@ class ContactList(Structure):
 
 
 STRUCTURES: dict[str, Any] = {
-    "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_wall": Wall, "fibrad_occupancy": Occupancy,
-    "fibrad_triangles": Triangles, "fibrad_scene_config": SceneConfig, "fibrad_spheres": Spheres,
-    "fibrad_beam_rule": BeamRule, "fibrad_surface_rule": SurfaceRule, "fibrad_cast_rule": CastRule,
-    "fibrad_bed_options": BedOptions, "fibrad_fault": Fault, "fibrad_run": Run, "fibrad_factors": Factors,
-    "fibrad_scene_facts": SceneFacts, "fibrad_bed_factors": BedFactors, "fibrad_exchange_rule": ExchangeRule,
-    "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow, "fibrad_side_view": SideView,
-    "fibrad_displacement_rule": DisplacementRule, "fibrad_displacement": Displacement, "fibrad_heat_config": HeatConfig,
-    "fibrad_heat_sources": HeatSources, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
-    "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult,
-    "fibrad_transient_config": TransientConfig, "fibrad_span": Span, "fibrad_contact_rule": ContactRule,
-    "fibrad_contact_list": ContactList}
+    "fibrad_heat_sources": HeatSources, "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_wall": Wall,
+    "fibrad_occupancy": Occupancy, "fibrad_triangles": Triangles, "fibrad_scene_config": SceneConfig,
+    "fibrad_spheres": Spheres, "fibrad_fault": Fault, "fibrad_run": Run, "fibrad_scene_facts": SceneFacts,
+    "fibrad_warning": Warning, "fibrad_beam_rule": BeamRule, "fibrad_cast_rule": CastRule,
+    "fibrad_exchange_rule": ExchangeRule, "fibrad_bed_rule": BedRule, "fibrad_factors": Factors,
+    "fibrad_bed_matrix": BedMatrix, "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow,
+    "fibrad_heat_config": HeatConfig, "fibrad_law": Law, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
+    "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult, "fibrad_span": Span,
+    "fibrad_contact_rule": ContactRule, "fibrad_contact_list": ContactList}
 
 # what a function returns, and its arguments
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
@@ -214,40 +201,25 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "fibrad_version": (c_char_p, []),
     "fibrad_why_text": (c_char_p, [c_int]),
     "fibrad_node_emissivity": (c_double, [c_double, c_double]),
-    "fibrad_view_factors": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(BedOptions), POINTER(Run),
-        POINTER(POINTER(BedFactors))]),
-    "fibrad_exchange_factors": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(ExchangeRule),
-        POINTER(BedOptions), POINTER(Run), POINTER(POINTER(BedFactors))]),
-    "fibrad_bed_free": (None, [POINTER(BedFactors)]),
-    "fibrad_exchange_wall_row": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(WallRule), c_double,
-        POINTER(Run), POINTER(WallRow)]),
-    "fibrad_side_views": (c_int, [POINTER(SceneConfig), POINTER(Spheres), c_uint32, POINTER(Run), POINTER(SideView)]),
-    "fibrad_displacements": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(DisplacementRule),
-        POINTER(c_ubyte), POINTER(Run), POINTER(Displacement), POINTER(SceneFacts)]),
-    "fibrad_radiation_new": (c_int, [POINTER(c_void_p), POINTER(SceneConfig), POINTER(Spheres), POINTER(HeatConfig),
-        POINTER(Run)]),
-    "fibrad_radiation_move": (c_int, [c_void_p, POINTER(SceneConfig), POINTER(Spheres)]),
-    "fibrad_radiation_solve": (c_int, [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]),
-    "fibrad_radiation_sides": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double)]),
-    "fibrad_radiation_settle": (c_int, [c_void_p, POINTER(HeatSources), EmissivityLaw, c_void_p, POINTER(c_double),
-        POINTER(c_double), POINTER(HeatResult)]),
-    "fibrad_radiation_shine": (c_int, [c_void_p, POINTER(LightSources), POINTER(LightResult)]),
-    "fibrad_radiation_describe": (None, [c_void_p, POINTER(SceneFacts), POINTER(Fault)]),
-    "fibrad_radiation_free": (None, [c_void_p]),
-    "fibrad_transient_new": (c_int, [POINTER(c_void_p), POINTER(SceneConfig), POINTER(Spheres),
-        POINTER(TransientConfig), POINTER(Run)]),
-    "fibrad_transient_move": (c_int, [c_void_p, POINTER(SceneConfig), POINTER(Spheres)]),
-    "fibrad_transient_powers": (c_int, [c_void_p, POINTER(HeatSources), POINTER(HeatResult)]),
-    "fibrad_transient_sides": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double)]),
-    "fibrad_transient_shine": (c_int, [c_void_p, POINTER(LightSources), POINTER(LightResult)]),
-    "fibrad_transient_advance": (c_int, [c_void_p, POINTER(HeatSources), POINTER(Span)]),
-    "fibrad_transient_describe": (None, [c_void_p, POINTER(SceneFacts), POINTER(Fault)]),
-    "fibrad_transient_free": (None, [c_void_p]),
-    "fibrad_contacts_find": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(ContactRule),
-        POINTER(POINTER(ContactList))]),
+    "fibrad_heat_sources_init": (None, [POINTER(HeatSources)]),
+    "fibrad_bed_new": (c_int, [POINTER(c_void_p), POINTER(SceneConfig), POINTER(Spheres), POINTER(Run)]),
+    "fibrad_bed_move": (c_int, [c_void_p, POINTER(SceneConfig), POINTER(Spheres)]),
+    "fibrad_bed_describe": (None, [c_void_p, POINTER(SceneFacts), POINTER(Fault)]),
+    "fibrad_bed_warnings": (c_uint32, [c_void_p, POINTER(Warning)]),
+    "fibrad_bed_free": (None, [c_void_p]),
+    "fibrad_bed_factors": (c_int, [c_void_p, POINTER(BedRule), POINTER(POINTER(BedMatrix))]),
+    "fibrad_bed_matrix_free": (None, [POINTER(BedMatrix)]),
+    "fibrad_view_factors": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(BedRule), POINTER(Run),
+        POINTER(POINTER(BedMatrix))]),
+    "fibrad_bed_wall_row": (c_int, [c_void_p, c_uint32, POINTER(WallRule), c_double, POINTER(WallRow)]),
+    "fibrad_bed_beams": (c_int, [c_void_p, POINTER(HeatConfig)]),
+    "fibrad_bed_solve": (c_int, [c_void_p, POINTER(HeatSources), POINTER(Law), POINTER(HeatResult)]),
+    "fibrad_bed_sides": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double)]),
+    "fibrad_bed_shine": (c_int, [c_void_p, POINTER(LightSources), POINTER(LightResult)]),
+    "fibrad_bed_advance": (c_int, [c_void_p, POINTER(HeatSources), POINTER(Span)]),
+    "fibrad_bed_contacts": (c_int, [c_void_p, POINTER(ContactRule), POINTER(POINTER(ContactList))]),
     "fibrad_contacts_conduct": (c_int, [POINTER(ContactList), POINTER(ContactRule), POINTER(c_double),
         POINTER(c_double), POINTER(c_double)]),
-    "fibrad_contacts_free": (None, [POINTER(ContactList)]),
     "fibrad_heap_resize": (c_void_p, [c_void_p, c_void_p, c_size_t]),
     "fibrad_host_sizeof": (c_size_t, [c_char_p]),
 }
