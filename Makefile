@@ -73,8 +73,9 @@ SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
 HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/% tables/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
-# other machines, and what takes minutes: `make nightly`
-NIGHTLY := tests/check_dist.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh
+# other machines, and what takes long: `make nightly`
+NIGHTLY := tests/check_dist.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
+           tests/test_furnace.c tests/test_reproduce.c
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
 COUNTED := bench/bench_instructions.c # linked with a library that counts its instructions, bench/count_cc.sh; on x86-64
@@ -236,12 +237,14 @@ dist: $(BUILD)/dist/fibrad.c
 $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/join.sh
 	kernel/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
 
-## test: install missing packages, build and run all tests
+# what scripts of tests are told
+WITH_MPI = BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)"
+
+## test: install missing packages, build and run all tests but those of nightly
 test: deps
 	@echo "Building the tests"
 	@$(MAKE) -s --no-print-directory programs all man dist
-	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" \
-	    tests/run.sh $(filter-out $(NIGHTLY),$(COUPLE_SCRIPTS) $(SCRIPTS)) $(TEST_PROGRAMS)
+	@$(WITH_MPI) tests/run.sh $(filter-out $(NIGHTLY) $(NIGHTLY:%.c=$(BUILD)/%),$(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS))
 
 ## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
 ROOMS   = $(shell sed -n 's/^\([a-z]*\) .*/\1/p' tests/rooms.txt)
@@ -251,7 +254,7 @@ programs_of = $(patsubst %.c,$(BUILD)/%,$(wildcard $(patsubst %,tests/test_%.c,$
 test-%:
 	@test -n "$(call of_room,$*)" || { echo "There is no room $*. The rooms are $(ROOMS)." >&2; exit 1; }
 	@$(MAKE) -s --no-print-directory $(BUILD)/fibrad $(call programs_of,$*) $(if $(call scripts_of,$*),all man)
-	@BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)" tests/run.sh $(call scripts_of,$*) $(call programs_of,$*)
+	@$(WITH_MPI) tests/run.sh $(call scripts_of,$*) $(call programs_of,$*)
 
 ## run-programs: build and run the test programs without the scripts
 run-programs: programs
@@ -434,14 +437,12 @@ cppcheck:
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
 ## nightly: what .ci/run leaves out: other compilers and machines, static checks, all of the couplings, long fuzzing
-WITH_MPI = BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(MPIRUN)"
 nightly: deps-nightly bits threads lint clang-warnings bench-quick programs couple
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
 	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
-	for coupling in couple lammps liggghts; do $(WITH_MPI) tests/couple/check_$$coupling.sh all || exit; done
-	for rest in pages made; do $(WITH_MPI) tests/couple/check_$$rest.sh || exit; done
+	$(MAKE) test-couple
 	$(MAKE) mutate
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
 	$(MAKE) fuzz-fixed $(ALL_ISAS) FUZZ_RUNS="read:40000 kernel:2000 host:300"

@@ -7,15 +7,13 @@
  * without a cutoff, from the same paths.
  *   beyond                  the fraction that is cut off
  *   flux_dropped            what a hot sphere loses to cold ones, 1 - D_ii; the fraction that is cut off is dropped
- *   flux                    the same; the fraction that is cut off is given back to the row
- *   conductivity_dropped    mean square displacement along the axes; the fraction is dropped
- *   conductivity            the same; the fraction is given back */
+ *   flux                    the same; the fraction that is cut off is given back to the row */
 #include "bed/packing.h"
 #include "bench_bed.h"
 
 /* Quantities of a row, as means over the spheres i = 0, STEP, 2 STEP ... */
 struct means {
-    double beyond, kept, flux, square;
+    double beyond, flux;
 };
 
 static struct means measure(const fibrad_scene *scene, fibrad_work *work, const fibrad_exchange_rule *rule,
@@ -24,18 +22,12 @@ static struct means measure(const fibrad_scene *scene, fibrad_work *work, const 
     const uint32_t n = 64 * step;
     fibrad_row row = bench_arrays(n > 20000 ? n : 20000);
     for (uint32_t i = 0; i < n; i += step) {
-        fibrad_displacement moved;
         double own = 0;
         bench_check("row", fibrad_exchange_row(scene, work, i, rule, &row, NULL));
-        const fibrad_displacement_rule carried = {
-            .emissivity = rule->emissivity, .paths = rule->paths, .cutoff = rule->cutoff};
-        bench_check("displacement", fibrad_exchange_displacement(scene, work, i, &carried, &moved));
         for (uint32_t k = 0; k < row.length; ++k)
             if (row.col[k] == i) own = row.f[k];
         sum.beyond += row.beyond / 64;
-        sum.kept += moved.absorbed / 64;
         sum.flux += (1 - own / (1 - row.beyond)) / 64;
-        sum.square += (moved.square[0] + moved.square[1] + moved.square[2]) / 64;
     }
     free(row.col);
     free(row.f);
@@ -53,7 +45,7 @@ int main(int argc, char **argv) {
     const fibrad_scene *scene = bench_scene(&bed, FIBRAD_ISA_BEST, &block);
     double *emissivity = bench_array(bed.n, sizeof *emissivity);
     bench_preamble("what a cutoff does to exchange factors", 1);
-    puts("emissivity,cutoff,beyond,flux_dropped,flux,conductivity_dropped,conductivity");
+    puts("emissivity,cutoff,beyond,flux_dropped,flux");
     for (int e = 0; e < 3; ++e) {
         for (uint32_t i = 0; i < bed.n; ++i) emissivity[i] = emissivities[e];
         fibrad_exchange_rule rule = {
@@ -61,9 +53,8 @@ int main(int argc, char **argv) {
         const struct means all = measure(scene, &work, &rule, bed.n / 64);
         for (rule.cutoff = 4; rule.cutoff < 13; rule.cutoff += 2) {
             const struct means cut = measure(scene, &work, &rule, bed.n / 64);
-            printf("%.1f,%.0f,%.2e,%.2e,%.2e,%.2e,%.2e\n", emissivities[e], rule.cutoff, cut.beyond,
-                   -cut.beyond / all.flux, cut.flux / all.flux - 1, cut.square / all.square - 1,
-                   cut.square / cut.kept / (all.square / all.kept) - 1);
+            printf("%.1f,%.0f,%.2e,%.2e,%.2e\n", emissivities[e], rule.cutoff, cut.beyond, -cut.beyond / all.flux,
+                   cut.flux / all.flux - 1);
             fflush(stdout);
         }
     }

@@ -14,7 +14,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 static fibrad_bed_matrix *rows_of(const struct bed *bed, uint32_t directions, uint32_t points, int raw,
-                                   const unsigned char *wanted) {
+                                  const unsigned char *wanted) {
     const fibrad_beam_rule rule = {.directions = directions, .points = points};
     const fibrad_bed_rule options = {.beam = &rule, .raw = raw, .wanted = wanted};
     return bench_factors(bed, &options, 0);

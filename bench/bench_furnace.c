@@ -5,7 +5,7 @@
  * The bench writes CSV to standard output. Errors are those of temperatures, in per cent. The reference is a Monte
  * Carlo run with REFERENCE_BUNDLES (2e7) bundles and another seed, on the same 20 x 20 x 40 cells. There are three
  * errors: the largest of all cells, the largest in the plane y = 1 m, and the root mean square. The numbers of bundles
- * rise up to LARGEST_BUNDLES (2e6). The table of docs/furnace.md is by bench_furnace 100000000 16000000, which takes
+ * rise up to LARGEST_BUNDLES (2e6). The table of docs/validation.md is by bench_furnace 100000000 16000000, which takes
  * some minutes. */
 #include <math.h>
 #include <stdio.h>

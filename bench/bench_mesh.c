@@ -14,7 +14,6 @@
 #include "bed/packing.h"
 #include "bench_triangles.h"
 #include "read/read.h"
-#include "sample/direction.h"
 
 enum { CAPACITY = 20000, ROUNDS = 3, WALLS = 6, SETTINGS = 7 };
 
@@ -130,12 +129,23 @@ static double solid_angle(double v[3][3]) {
     return 2 * fabs(atan2(volume, r[0] * r[1] * r[2] + dot[0] * r[2] + dot[1] * r[0] + dot[2] * r[1]));
 }
 
+/* A random rotation, from a random unit quaternion (Shoemake). */
+static void random_rotation(uint64_t seed, double rotation[9]) {
+    const double u = bed_make_random(seed, 8), s = 2 * pi * bed_make_random(seed, 9),
+                 t = 2 * pi * bed_make_random(seed, 10);
+    const double a = sqrt(1 - u) * sin(s), b = sqrt(1 - u) * cos(s), c = sqrt(u) * sin(t), d = sqrt(u) * cos(t);
+    const double by_row[9] = {1 - 2 * (c * c + d * d), 2 * (b * c - a * d),     2 * (b * d + a * c),
+                              2 * (b * c + a * d),     1 - 2 * (b * b + d * d), 2 * (c * d - a * b),
+                              2 * (b * d - a * c),     2 * (c * d + a * b),     1 - 2 * (b * b + c * c)};
+    memcpy(rotation, by_row, sizeof by_row);
+}
+
 /* Makes a triangle in a plane 1.05 to 30 radii away. Returns its factor. */
 static double random_triangle(struct bench_triangles *triangles, uint64_t seed) {
     double rotation[9], v[3][3];
     const double away = 1.05 * pow(30 / 1.05, bed_make_random(seed, 0)),
                  size = 0.3 * pow(100, bed_make_random(seed, 1));
-    fibrad_rotation(seed + 1, rotation);
+    random_rotation(seed, rotation);
     for (uint64_t k = 0; k < 3; ++k) {
         const double p[3] = {size * (2 * bed_make_random(seed, 2 + k) - 1),
                              size * (2 * bed_make_random(seed, 5 + k) - 1), away};

@@ -56,26 +56,26 @@ static void compare(struct powers *p, int field) {
         }
 }
 
-static void solve_patches(struct powers *p, fibrad_radiation *radiation, double *power) {
+static void solve_patches(struct powers *p, fibrad_bed *radiation, double *power) {
     const fibrad_heat_sources sources = {
         .temperature = p->temperature, .emissivity = p->emissivity, .surroundings = SKY, .sigma = SIGMA};
-    bench_check("solve", fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}));
+    bench_check("solve", fibrad_bed_solve(radiation, &sources, NULL, &(fibrad_heat_result){.power = power}));
 }
 
-static fibrad_radiation *trace_patches(struct powers *p, const fibrad_heat_config *heat) {
-    fibrad_radiation *radiation;
+static fibrad_bed *trace_patches(struct powers *p, const fibrad_heat_config *heat) {
+    fibrad_bed *radiation;
     fibrad_run run = {.threads = 1};
-    bench_check("radiation", fibrad_radiation_new(&radiation, &p->config, &p->spheres, heat, &run));
+    bench_check("radiation", made_with(&radiation, &p->config, &p->spheres, heat, &run));
     return radiation;
 }
 
 static void find_truth(struct powers *p, const fibrad_heat_config *heat) {
-    fibrad_radiation *radiation = trace_patches(p, heat);
+    fibrad_bed *radiation = trace_patches(p, heat);
     for (int c = 0; c < CHECKS; c++) {
         set_field(p, field_of_check(p, c));
         solve_patches(p, radiation, p->truth[c]);
     }
-    fibrad_radiation_free(radiation);
+    fibrad_bed_free(radiation);
 }
 
 static void print_costs(struct powers *p, const char *way, const char *setting, double one, double hundred,
@@ -87,7 +87,7 @@ static void print_costs(struct powers *p, const char *way, const char *setting, 
 }
 
 /* Moves the bed. Returns the seconds of the solution after the move. */
-static double move_patches(struct powers *p, fibrad_radiation *radiation) {
+static double move_patches(struct powers *p, fibrad_bed *radiation) {
     double seconds = 0;
     for (int m = 0; m < MOVES; m++) {
         for (uint32_t i = 0; i < p->bed.n; i++) {
@@ -97,7 +97,7 @@ static double move_patches(struct powers *p, fibrad_radiation *radiation) {
             p->bed.z[i] += far * (bed_make_random(11 + (uint64_t)m, 3 * (uint64_t)i + 2) - .5);
         }
         const double begun = bench_thread_seconds();
-        bench_check("move", fibrad_radiation_move(radiation, &p->config, &p->spheres));
+        bench_check("move", fibrad_bed_move(radiation, &p->config, &p->spheres));
         solve_patches(p, radiation, p->power);
         seconds += bench_thread_seconds() - begun;
     }
@@ -110,7 +110,7 @@ static void bench_patches(struct powers *p, const fibrad_heat_config *heat) {
     double *place = bench_array(3 * (size_t)p->bed.n, sizeof *place), *const axis[] = {p->bed.x, p->bed.y, p->bed.z};
     const double begun = bench_thread_seconds();
     double one = 0;
-    fibrad_radiation *radiation = trace_patches(p, heat);
+    fibrad_bed *radiation = trace_patches(p, heat);
     for (int field = 0; field < p->fields; field += EACH) {
         set_field(p, field);
         solve_patches(p, radiation, p->power);
@@ -123,7 +123,7 @@ static void bench_patches(struct powers *p, const fibrad_heat_config *heat) {
     for (size_t k = 0; k < 3; k++) memcpy(axis[k], place + k * p->bed.n, bytes);
     snprintf(setting, sizeof setting, "%u x %u x %u", heat->patches, heat->directions, heat->points);
     print_costs(p, "patches", setting, one, hundred, moved);
-    fibrad_radiation_free(radiation);
+    fibrad_bed_free(radiation);
     free(place);
 }
 
@@ -131,7 +131,7 @@ static fibrad_bed_matrix *make_factors(struct powers *p, double tolerance) {
     const fibrad_exchange_rule rule = {.emissivity = p->emissivity, .tolerance = tolerance};
     fibrad_run run = {.threads = 1};
     fibrad_bed_matrix *factors;
-    bench_check("factors", fibrad_exchange_factors(&p->config, &p->spheres, &rule, NULL, &run, &factors));
+    bench_check("factors", exchange_of(&p->config, &p->spheres, &rule, NULL, &run, &factors));
     return factors;
 }
 
@@ -176,7 +176,7 @@ static void bench_corrected(struct powers *p) {
     const uint32_t n = p->bed.n;
     double *compared = bench_array(n, sizeof *compared), one = 0;
     const double begun = bench_thread_seconds();
-    fibrad_radiation *radiation = trace_patches(p, NULL);
+    fibrad_bed *radiation = trace_patches(p, NULL);
     fibrad_bed_matrix *factors = make_factors(p, ROUGH);
     int solutions = 0;
     for (int field = 0; field < p->fields; field++) {
@@ -194,7 +194,7 @@ static void bench_corrected(struct powers *p) {
     }
     snprintf(setting, sizeof setting, "%d by patches", solutions);
     print_costs(p, "corrected", setting, one, bench_thread_seconds() - begun, one);
-    fibrad_radiation_free(radiation);
+    fibrad_bed_free(radiation);
     fibrad_bed_matrix_free(factors);
     free(compared);
 }

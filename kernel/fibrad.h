@@ -308,11 +308,10 @@ typedef enum fibrad_why {
     FIBRAD_WHY_DARK = 20,         /* No open face lets a light in. */
     FIBRAD_WHY_FOOTPRINT = 21,    /* A light through a disc (fibrad_light.h) meets a sphere before it meets the disc. */
     FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
-    FIBRAD_WHY_UNIFORM = 23,      /* `uniform` (fibrad_heat.h) is set although spheres conduct. */
-    FIBRAD_WHY_CONTACT = 24,      /* A contact has an end that is neither a sphere nor a wall. */
-    FIBRAD_WHY_CONDUCTANCE = 25,  /* A conductance is negative or out of range. */
-    FIBRAD_WHY_TOUCHED = 26,      /* A wall in contact is insulated, or its sides have temperatures. */
-    FIBRAD_WHY_ALONE = 27         /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
+    FIBRAD_WHY_CONTACT = 23,      /* A contact has an end that is neither a sphere nor a wall. */
+    FIBRAD_WHY_CONDUCTANCE = 24,  /* A conductance is negative or out of range. */
+    FIBRAD_WHY_TOUCHED = 25,      /* A wall in contact is insulated, or its sides have temperatures. */
+    FIBRAD_WHY_ALONE = 26         /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
 } fibrad_why;
 
 /* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */
@@ -708,7 +707,7 @@ int fibrad_matrix_init(fibrad_matrix **matrix, void *memory, size_t size, const 
  *   Errors   _ARGUMENT
  *            _STATE: the matrix is closed already, or the rows have changed
  *   Cost     O(entries), for each of up to 60 passes of step 2, and more of steps 4 and 5
- *   Source   docs/methods.md section 5, docs/methods_heat.md sections 3 and 4 */
+ *   Source   docs/methods.md sections 5, 15 and 16 */
 int fibrad_matrix_close(fibrad_matrix *matrix);
 
 /* Reads a matrix.
@@ -770,7 +769,7 @@ double fibrad_relative_conductivity(double conductivity, double radius, double t
  *   Output   n, with 0 < n <= emissivity. If the emissivity is 0, n is 0.
  *   Errors   NaN: a number is out of its range
  *   Cost     0.1 microseconds
- *   Source   docs/methods_heat.md section 15 */
+ *   Source   docs/methods.md section 27 */
 double fibrad_node_emissivity(double emissivity, double conductivity);
 
 /* Row i of the exchange factors of a scene. Factors to walls, `escaped` and `beyond` count all reflections, too. The
@@ -783,7 +782,7 @@ double fibrad_node_emissivity(double emissivity, double conductivity);
  *   Errors   as fibrad_beam_row. The emissivities of sphere i, of walls, and of spheres that are met are checked.
  *   Cost     the beam row, and 0.1 to 0.2 microseconds per ray. A path has about 2 rays if the emissivity (of nodes)
  *            is 0.8, and 14 if it is 0.2. Work memory that may grow takes up to 6 MB more, for speed.
- *   Source   docs/methods_heat.md section 2 */
+ *   Source   docs/methods.md section 14 */
 int fibrad_exchange_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_exchange_rule *rule,
                         fibrad_row *row, uint64_t *rays);
 
@@ -814,7 +813,7 @@ typedef struct fibrad_wall_rule {
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK, _SUM
  *            _UNSUPPORTED: an endless wall or opening
  *   Cost     0.1 to 0.5 microseconds per ray
- *   Source   docs/methods_heat.md section 4 */
+ *   Source   docs/methods.md section 16 */
 int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t wall, const fibrad_wall_rule *rule,
                          uint32_t part, fibrad_wall_row *row, uint64_t *reflected);
 
@@ -858,7 +857,7 @@ typedef struct fibrad_displacement {
  *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY, _BACK
  *            _UNSUPPORTED: spheres conduct, and the scene has walls or openings
  *   Cost     0.1 to 0.2 microseconds per ray; 2 n rays a path if spheres conduct
- *   Source   docs/methods_heat.md sections 12 and 14 */
+ *   Source   docs/methods.md sections 24 and 26 */
 int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, uint32_t i,
                                  const fibrad_displacement_rule *rule, fibrad_displacement *displacement);
 

@@ -10,7 +10,7 @@
  *            E = sigma T^4 [W/m2].
  * Equations  For each axis and hemisphere (up or down the axis) q is the flux [W/m2]. Theta is the integral of I cos^2
  *            over the integral of I cos, I being the intensity. The transverse term C is what the other axes add.
- *            docs/furnace.md has the equations.
+ *            docs/validation.md has the equations.
  * Bundles    1. fibrad_furnace_emit plans bundles of rays.
  *            2. fibrad_furnace_trace traces every bundle of the plan once, into one tally for each thread.
  *            3. fibrad_furnace_tally_add adds the tallies up.
@@ -19,7 +19,7 @@
  *            bundles it holds. A call returns FIBRAD_E_STATE if a bundle is missing or was traced twice, or if a tally
  *            belongs to another furnace or restart.
  * Units      metres, watts and kelvins. Words, memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/furnace.md. "The paper" is L. Zhao and others, J. Univ. Sci. Technol. Beijing 27 (2005) 423.
+ * Source     docs/validation.md. "The paper" is L. Zhao and others, J. Univ. Sci. Technol. Beijing 27 (2005) 423.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_FURNACE_H
@@ -95,7 +95,7 @@ double fibrad_furnace_temperature(double e);
  *   Input    theta: above 0, at most 1
  *   Errors   _ARGUMENT
  *   Cost     O(cells)
- *   Source   docs/furnace.md */
+ *   Source   docs/validation.md */
 int fibrad_furnace_theta(fibrad_furnace *furnace, double theta);
 
 /* Let G be the incident radiation. The flux equations need scattering G/4. This rule says how G/4 is computed. */
@@ -198,7 +198,7 @@ typedef enum fibrad_furnace_estimator {
  *            _STATE: the plans since the restart had other physics, or the tally does not hold each of their bundles
  *            once
  *   Cost     O(cells times symmetries)
- *   Source   the paper, equation 9; docs/furnace.md */
+ *   Source   the paper, equation 9; docs/validation.md */
 int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally *tally,
                             fibrad_furnace_estimator estimator, int transverse, fibrad_furnace_scatter scatter);
 
@@ -207,7 +207,7 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
  *   Input    tally: the sum
  *   Errors   as fibrad_furnace_estimate
  *   Cost     O(cells times symmetries)
- *   Source   docs/furnace.md */
+ *   Source   docs/validation.md */
 int fibrad_furnace_equilibrium(fibrad_furnace *furnace, const fibrad_furnace_tally *tally);
 
 #ifdef __cplusplus

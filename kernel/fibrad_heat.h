@@ -17,7 +17,7 @@
  *            For other sources, go on with step 3. If spheres have moved, call fibrad_heat_move and go on with step 2.
  * Units      as in fibrad.h. Powers are in sigma K^4 L^2. They are watts if L is the metre and sigma is in W/(m2 K4).
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/methods_heat.md sections 5 to 9, 13 and 16. docs/heat.md says what is assumed.
+ * Source     docs/methods.md sections 17 to 21, 25 and 28. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_HEAT_H
@@ -110,10 +110,9 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * The temperature of a sphere with a finite conductivity differs from point to point. `temperature` is then the mean
  * over its surface. Inside, the temperature is taken to be steady, and the power P - h sigma (T^4 - R^4) to be
- * released evenly. Emission is taken to be linear in the difference from the mean (docs/methods_heat.md section 13).
- * With `conductivity`, `uniform` must be 0. `conductivity` is k_s of the solid, not k* of
- * fibrad_relative_conductivity. It is in units of sigma K^3 L. If lengths are in millimetres and sigma is in W/(m2
- * K4), a solid of 30 W/(m K) has the conductivity 30/0.001.
+ * released evenly. Emission is taken to be linear in the difference from the mean (docs/methods.md section 25).
+ * `conductivity` is k_s of the solid, not k* of fibrad_relative_conductivity. It is in units of sigma K^3 L. If lengths
+ * are in millimetres and sigma is in W/(m2 K4), a solid of 30 W/(m K) has the conductivity 30/0.001.
  *
  * Light has two inputs. Its power (fibrad_heat_sum_light) is added to the given powers. `absorbed` has the light of
  * each patch:
@@ -156,7 +155,6 @@ typedef struct fibrad_heat_sources {
     double sigma;                   /* of E = sigma T^4, FIBRAD_SIGMA_MIN to _MAX */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
     uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */
-    int uniform;                    /* 1: one radiosity per surface, no extrapolation; exact only at emissivity 1 */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */

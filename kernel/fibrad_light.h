@@ -16,7 +16,7 @@
  * Patches    fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
- * Source     docs/methods_heat.md, Light from outside. docs/heat.md says what is assumed.
+ * Source     docs/methods.md section 29. docs/heat.md says what is assumed.
  *
  * SPDX-License-Identifier: MIT */
 #ifndef FIBRAD_LIGHT_H

@@ -73,7 +73,7 @@ typedef struct fibrad_triangle_hit {
  *   Output   hit
  *   Errors   _ARGUMENT, _STATE
  *   Cost     1 to 2 microseconds among 1e5 triangles
- *   Source   docs/methods.md section 9 */
+ *   Source   docs/methods.md section 10 */
 int fibrad_triangle_ray(const fibrad_scene *scene, const double origin[3], const double w[3], double length,
                         fibrad_triangle_hit *hit);
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# check_fortran.sh - the Fortran module: without warnings, against closed forms, its example and that of docs/python.md.
+# check_fortran.sh - the Fortran module: without warnings, against closed forms, its example and that of docs/embedding.md.
 # SPDX-License-Identifier: MIT
 set -eu
 : "${BUILD:=build}" "${CC:=cc}" "${FC:=gfortran}" "${MAKE:=make}"
@@ -8,7 +8,7 @@ work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT
 "$MAKE" -s --no-print-directory lib-host BUILD="$BUILD" CC="$CC"
 case $BUILD in /*) build=$BUILD ;; *) build=$PWD/$BUILD ;; esac
 
-awk '/^```fortran$/ { inside = 1; next } /^```/ { inside = 0 } inside' docs/python.md >"$work/page.f90"
+awk '/^```fortran$/ { inside = 1; next } /^```/ { inside = 0 } inside' docs/embedding.md >"$work/page.f90"
 grep -q '^end program' "$work/page.f90"
 
 compile() { "$FC" -O2 -std=f2008 -Wall -Wextra -Werror -J "$work" "$@"; }

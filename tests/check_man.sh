@@ -19,7 +19,6 @@ count=$(echo "$commands" | wc -w)
 test "$count" -ge 7 || fault "only $count commands"
 
 # ---- pages: as many as commands, and one; all words of the help in their order but headings and synopsis
-# --------------
 words() { sed 's/  */\n/g' | grep -v '^$'; }
 if command -v groff >/dev/null; then
     for name in "" $commands; do
@@ -46,8 +45,7 @@ fi
 test "$(find "$BUILD/man" -type f | wc -l)" = $((count + 1)) || fault "other files in $BUILD/man"
 
 # ---- completion
-# -------------------------------------------------------------------------------------------------------- complete
-# WORD...: the completions of the last word
+# complete_words WORD...: the completions of the last word
 complete_words() {
     (cd "$work/files" && bash -c '
         source "$0"
@@ -68,20 +66,21 @@ if command -v bash >/dev/null; then
     mkdir "$work/files" && touch "$work/files/bed one.dump" "$work/files/bed.csv" "$work/files/-odd"
     for name in $commands; do
         offers "$name" "$name"
+        complete_words "$name" -- | tr ' ' '\n' >"$work/offered"
         for option in $("$fibrad" "$name" --help all | sed -n 's/^  \(-., \)\{0,1\}\(--[a-z-]*\) .*/\2/p'); do
-            complete_words "$name" "$option" | tr ' ' '\n' | grep -qx -e "$option" || fault "fibrad $name $option: not offered"
+            grep -qx -e "$option" "$work/offered" || fault "fibrad $name $option: not offered"
         done
     done
     test "$(complete_words "" | wc -w)" -ge 12 || fault "fibrad: offers '$(complete_words "")'"
     offers "heat help" he
     offers "heat" help he
-    offers "--targets" bed --tar
-    offers "-o" bed -o
-    offers "bed one.dump bed.csv" bed be
-    offers "bed.csv" bed -o bed.
-    offers "bed.csv" bed --output = bed.
-    offers "-odd" bed -- -o
-    offers "" bed --no-such
+    offers "--targets" factors --tar
+    offers "-o" factors -o
+    offers "bed one.dump bed.csv" factors be
+    offers "bed.csv" factors -o bed.
+    offers "bed.csv" factors --output = bed.
+    offers "-odd" factors -- -o
+    offers "" factors --no-such
     offers "" nothing --a
 else
     echo "SKIP completion: no bash on this machine"

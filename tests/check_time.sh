@@ -58,15 +58,13 @@ awk -F , '$2 == 0 { t[$1] = $3 } END { exit !(t[50] > 690 && t[50] < 700.15 && t
     "$work/mote.out.csv" || fault "the mote does not follow the walls: $(grep ',0,' "$work/mote.out.csv")"
 is "$(value wall_zmin_K)" 1100.15 1e-3 || fault "wall_zmin_K is $(value wall_zmin_K)"
 
-# Powers, fixed steps and all models. The energy supplied is stored or given off.
-for model in factors patches; do
-    march tests/data/formats/lammps.dump --temperature 900 --power 2 --ambient 300 --until 20 --step 5 --model "$model" \
-        --patches 24 --directions 36 -o "$work/$model.json" --plot "$work/$model.svg" || fault "$(cat "$work/errors")"
-    test "$(value steps)" = 4 || fault "$model: $(value steps) steps instead of 4"
-    is "$(value balance_of_stored)" 0 1e-12 || fault "$model: balance_of_stored is $(value balance_of_stored)"
-    grep -q '"time_s":20,' "$work/$model.json" || fault "$model: no time in .json"
-    grep -q '</svg>' "$work/$model.svg" || fault "$model: no picture"
-done
+# Powers and fixed steps. The energy supplied is stored or given off.
+march tests/data/formats/lammps.dump --temperature 900 --power 2 --ambient 300 --until 20 --step 5 --patches 24 \
+    --directions 36 -o "$work/steps.json" --plot "$work/steps.svg" || fault "$(cat "$work/errors")"
+test "$(value steps)" = 4 || fault "$(value steps) steps instead of 4"
+is "$(value balance_of_stored)" 0 1e-12 || fault "balance_of_stored is $(value balance_of_stored)"
+grep -q '"time_s":20,' "$work/steps.json" || fault "no time in .json"
+grep -q '</svg>' "$work/steps.svg" || fault "no picture"
 
 refused() { # refused STATUS WORDS OPTIONS...: of one.csv
     status=$1 words=$2
@@ -93,7 +91,6 @@ refused 2 '3 is not above the time before' "$@" --temperature T --times 5,3
 refused 2 '90 is not above the time before, or not within 0 and 60' "$@" --temperature T --times 90
 refused 2 'times every: .0. is not a number\|not within' "$@" --temperature T --times every:0
 refused 2 'put \* into its name' "$@" --temperature T -o "$work/x.vtp"
-refused 2 'model factors: emissivities cannot follow' "$@" --temperature T --emissivity "@$work/eps.csv" --model factors
 refused 2 'not for --until' "$@" --temperature T --error 0.01
 refused 2 'one frame' "$@" --temperature T --frame all
 refused 3 'above 0 K' "$@" --temperature T --power=-1e6

@@ -24,8 +24,13 @@ build() {
 }
 
 run() {
-    case $2 in couple | liggghts) program=tests/couple/check_$2.sh ;; *) program=build/tests/test_$2 ;; esac
-    (cd "$1" && BUILD=build MAKEFLAGS=" -- CFLAGS=-O1 ISAS=scalar" timeout 1200 "$program") >"$1/log" 2>&1
+    case $2 in
+    couple) program=tests/couple/check_couple.sh ;;
+    liggghts) program="tests/couple/check_liggghts.sh all" ;;
+    *) program=build/tests/test_$2 ;;
+    esac
+    # shellcheck disable=SC2086  # a program and its argument
+    (cd "$1" && BUILD=build MAKEFLAGS=" -- CFLAGS=-O1 ISAS=scalar" timeout 1200 $program) >"$1/log" 2>&1
 }
 
 # breaks [NUMBER]...: the lines of these breaks, or of all

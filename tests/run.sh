@@ -1,9 +1,8 @@
 #!/bin/sh
 # run.sh PROGRAM|SCRIPT... - runs tests and ends with "N passed, N failed". SPDX-License-Identifier: MIT
 #
-# Two tests run at a time. check_made.sh runs by itself at the end, since it removes files that others use. A libcheck
-# program counts by its own summary, a script counts as one test. A program that ends without a summary, or whose exit
-# status contradicts its summary, counts as one more failure.
+# Two tests run at a time. A libcheck program counts by its own summary, a script counts as one test. A program that ends
+# without a summary, or whose exit status contradicts its summary, counts as one more failure.
 set -u
 logs=${BUILD:=build}/tests/logs
 export BUILD
@@ -41,8 +40,7 @@ export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | grep -v check_made | xargs -r -n 1 -P 2 "$0" --one
-printf '%s\n' "$@" | grep check_made | xargs -r -n 1 "$0" --one
+printf '%s\n' "$@" | xargs -r -n 1 -P 2 "$0" --one
 
 set -- 0 0 0 0
 for counts in "$logs"/*.counts; do

@@ -269,7 +269,7 @@ TEST(clipping_agrees_with_the_arrangement) {
     OWNED_AREAS areas = areas_make();
     double worst = 0, clipped[MOST + 1], robust[MOST + 1], many[MOST + 1];
     uint32_t left[2] = {0, 0}; /* windows left to arrangements, by ordinary clipping and by clipping for many discs */
-    const int rounds = 60000;
+    const int rounds = 20000;
     for (int round = 0; round < rounds; round++) {
         struct window w = {0};
         uint32_t n = 1 + (uint32_t)random_in(0, 16);

@@ -1,6 +1,6 @@
 /* test_callbacks.c - functions of the caller that call the library again, and outputs of the simple layer after calls
  * that fail. SPDX-License-Identifier: MIT */
-#include "simple/fibrad_host.h"
+#include "host_owned.h"
 #include "scenes.h"
 #include "suite.h"
 
@@ -12,8 +12,7 @@ struct cube {
     double power[CUBE], found[CUBE], first[CUBE];
     fibrad_spheres spheres;
     fibrad_heat_sources sources;
-    fibrad_radiation *radiation;
-    fibrad_transient *transient;
+    fibrad_bed *made;
     bool inside;    /* functions of the caller call the library */
     int calls, ask; /* calls so far; the call after which progress asks to stop, 0: never */
 };
@@ -29,10 +28,7 @@ static void make_cube(struct cube *c) {
     c->sources.emissivity = c->emissivity, c->sources.temperature = c->temperature, c->sources.surroundings = 300;
 }
 
-static void free_cube(struct cube *c) {
-    fibrad_radiation_free(c->radiation);
-    fibrad_transient_free(c->transient);
-}
+static void free_cube(struct cube *c) { fibrad_bed_free(c->made); }
 
 #define OWNED_CUBE OWNED_BY(free_cube) struct cube
 
@@ -49,17 +45,11 @@ static void call_again(struct cube *c) {
     c->calls++;
     if (!c->inside) return;
     for (int i = 0; i < CUBE; i++) power[i] = temperature[i] = 77;
-    if (c->radiation) {
-        ck_assert_int_eq(fibrad_radiation_solve(c->radiation, &c->sources, &result), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_radiation_move(c->radiation, NULL, &c->spheres), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_radiation_shine(c->radiation, &lit, &shone), FIBRAD_E_STATE);
-    }
-    if (c->transient) {
-        ck_assert_int_eq(fibrad_transient_move(c->transient, NULL, &c->spheres), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_transient_powers(c->transient, &c->sources, &result), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_transient_shine(c->transient, &lit, &shone), FIBRAD_E_STATE);
-        ck_assert_int_eq(fibrad_transient_advance(c->transient, &c->sources, &span), FIBRAD_E_STATE);
-    }
+    ck_assert_int_eq(fibrad_bed_solve(c->made, &c->sources, NULL, &result), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_bed_move(c->made, NULL, &c->spheres), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_bed_beams(c->made, NULL), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_bed_shine(c->made, &lit, &shone), FIBRAD_E_STATE);
+    ck_assert_int_eq(fibrad_bed_advance(c->made, &c->sources, &span), FIBRAD_E_STATE);
     for (int i = 0; i < CUBE; i++) ck_assert(power[i] == 77 && temperature[i] == 77);
 }
 
@@ -90,52 +80,49 @@ TEST(laws_that_solve) {
         make_cube(&c);
         fibrad_run run = {.threads = 1, .progress = show, .context = &c};
         fibrad_heat_result result = {.power = power[inside], .temperature = c.found};
-        assert_ok(fibrad_radiation_new(&c.radiation, NULL, &c.spheres, &coarse, &run));
+        assert_ok(made_with(&c.made, NULL, &c.spheres, &coarse, &run));
         c.inside = inside;
-        assert_ok(fibrad_radiation_settle(c.radiation, &c.sources, warm, &c, c.emissivity, NULL, &result));
+        assert_ok(made_settle(c.made, &c.sources, warm, &c, c.emissivity, NULL, &result));
         ck_assert_int_gt(c.calls, 2);
         c.inside = false;
-        assert_ok(fibrad_radiation_solve(c.radiation, &c.sources, &result)); /* it is free again */
+        assert_ok(fibrad_bed_solve(c.made, &c.sources, NULL, &result)); /* it is free again */
     }
     ck_assert_mem_eq(power[0], power[1], sizeof power[0]);
 }
 
-LOOP_TEST(observers_that_move, 3) {
+LOOP_TEST(observers_that_move, 2) {
     double temperature[2][CUBE];
     for (int inside = 0; inside < 2; inside++) {
         OWNED_CUBE c;
         make_cube(&c);
-        const fibrad_transient_config config = {
-            .method = _i, .heat = coarse, .exchange = {.directions = 20, .paths = 50}};
         fibrad_run run = {.threads = 1, .progress = show, .context = &c};
+        fibrad_law law = {.follow = warm, .context = &c};
         fibrad_span span = {.temperature = temperature[inside], .capacity = c.capacity, .duration = 1e-3};
-        span.observe = look, span.law = _i == FIBRAD_TRANSIENT_PATCHES ? warm : NULL, span.context = &c;
+        span.observe = look, span.law = _i ? &law : NULL, span.context = &c;
         memcpy(temperature[inside], c.temperature, sizeof c.temperature);
-        assert_ok(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, &run));
+        assert_ok(made_with(&c.made, NULL, &c.spheres, &coarse, &run));
         c.inside = inside;
-        assert_ok(fibrad_transient_advance(c.transient, &c.sources, &span));
+        assert_ok(fibrad_bed_advance(c.made, &c.sources, &span));
         ck_assert_int_gt(c.calls, 2);
         c.inside = false;
-        assert_ok(fibrad_transient_move(c.transient, NULL, &c.spheres)); /* it is free again */
+        assert_ok(fibrad_bed_move(c.made, NULL, &c.spheres)); /* it is free again */
     }
     ck_assert_mem_eq(temperature[0], temperature[1], sizeof temperature[0]);
 }
 
-/* A move that is stopped in its trace leaves a bed without powers, until a move succeeds. */
-LOOP_TEST(moves_that_stop_leave_no_powers, 2) {
+/* A call that is stopped in its trace leaves a bed whose beams the next call traces. */
+TEST(traces_that_stop_are_made_again) {
     OWNED_CUBE c;
     make_cube(&c);
-    const fibrad_transient_config config = {.method = _i, .heat = coarse, .exchange = {.directions = 20, .paths = 50}};
     fibrad_run run = {.threads = 1, .progress = show, .context = &c};
     fibrad_span span = {.temperature = c.temperature, .capacity = c.capacity, .duration = 1e-9};
-    assert_ok(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, &run));
-    assert_ok(fibrad_transient_advance(c.transient, &c.sources, &span));
+    assert_ok(made_with(&c.made, NULL, &c.spheres, &coarse, &run));
+    assert_ok(fibrad_bed_advance(c.made, &c.sources, &span));
+    assert_ok(fibrad_bed_move(c.made, NULL, &c.spheres));
     c.calls = 0, c.ask = 1;
-    ck_assert_int_eq(fibrad_transient_move(c.transient, NULL, &c.spheres), FIBRAD_E_CANCELLED);
+    ck_assert_int_eq(fibrad_bed_beams(c.made, &coarse), FIBRAD_E_CANCELLED);
     c.ask = 0;
-    ck_assert_int_eq(fibrad_transient_advance(c.transient, &c.sources, &span), FIBRAD_E_STATE);
-    assert_ok(fibrad_transient_move(c.transient, NULL, &c.spheres));
-    assert_ok(fibrad_transient_advance(c.transient, &c.sources, &span));
+    assert_ok(fibrad_bed_advance(c.made, &c.sources, &span));
 }
 
 /* Laws that never settle, or go wrong: emissivities up and down; NaN at the second call. */
@@ -161,8 +148,8 @@ TEST(laws_that_fail_write_nothing) {
         double before[CUBE], marked[CUBE], emissivity[CUBE];
         for (int i = 0; i < CUBE; i++) c.power[i] = c.found[i] = marked[i] = -7 - i, before[i] = emissivity[i] = .5;
         fibrad_heat_result result = {.power = c.power, .temperature = c.found, .surroundings_power = 77};
-        assert_ok(fibrad_radiation_new(&c.radiation, NULL, &c.spheres, &coarse, NULL));
-        ck_assert_int_eq(fibrad_radiation_settle(c.radiation, &c.sources, laws[k], &calls, emissivity, NULL, &result),
+        assert_ok(made_with(&c.made, NULL, &c.spheres, &coarse, NULL));
+        ck_assert_int_eq(made_settle(c.made, &c.sources, laws[k], &calls, emissivity, NULL, &result),
                          k == 0 ? FIBRAD_E_UNSOLVABLE : FIBRAD_E_ARGUMENT);
         ck_assert_mem_eq(emissivity, before, sizeof before);
         ck_assert_mem_eq(c.power, marked, sizeof marked);
@@ -179,15 +166,15 @@ TEST(cancelled_light_writes_nothing) {
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     const fibrad_light_sources sources = {.light = &light, .lights = 1, .absorptivity = c.emissivity};
     fibrad_run run = {.threads = 1, .progress = show, .context = &c};
-    assert_ok(fibrad_radiation_new(&c.radiation, NULL, &c.spheres, &coarse, &run));
+    assert_ok(made_with(&c.made, NULL, &c.spheres, &coarse, &run));
     fibrad_light_result result = {.absorbed = c.found, .absorbed_first = c.first};
-    assert_ok(fibrad_radiation_shine(c.radiation, &sources, &result));
+    assert_ok(fibrad_bed_shine(c.made, &sources, &result));
     const fibrad_light_result whole = result;
     double marked[CUBE];
     for (int i = 0; i < CUBE; i++) marked[i] = c.found[i] = c.first[i] = -7 - i;
     for (int ask = 1; status == FIBRAD_E_CANCELLED; ask++) {
         c.calls = 0, c.ask = ask;
-        status = fibrad_radiation_shine(c.radiation, &sources, &result);
+        status = fibrad_bed_shine(c.made, &sources, &result);
         if (status == FIBRAD_OK) break;
         ck_assert_int_eq(status, FIBRAD_E_CANCELLED);
         ck_assert_mem_eq(c.found, marked, sizeof marked);
@@ -200,30 +187,8 @@ TEST(cancelled_light_writes_nothing) {
     ck_assert_int_gt(cancelled, 2);
 }
 
-/* Steps in time take exchange factors of spheres of one temperature, from paths of their own. */
-TEST(rules_that_time_does_not_take) {
-    OWNED_CUBE c;
-    make_cube(&c);
-    double share[CUBE];
-    for (int i = 0; i < CUBE; i++) share[i] = .5;
-    for (int k = 0; k < 9; k++) {
-        fibrad_transient_config config = {.method = k / 3, .heat = coarse, .exchange = {.paths = 50}};
-        if (k % 3 == 0) config.exchange.conductivity = share;
-        if (k % 3 == 1) config.exchange.node_emissivity = share;
-        if (k % 3 == 2) config.exchange.known = share;
-        assert_invalid(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, NULL));
-    }
-    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_FACTORS, .exchange = {.paths = 50}};
-    fibrad_heat_result result = {.power = c.power};
-    assert_ok(fibrad_transient_new(&c.transient, NULL, &c.spheres, &config, NULL));
-    assert_ok(fibrad_transient_powers(c.transient, &c.sources, &result));
-    c.sources.conductivity = share;
-    assert_invalid(fibrad_transient_powers(c.transient, &c.sources, &result));
-}
-
 TEST(cancelled_span_writes_nothing) {
     OWNED_CUBE c;
-    const fibrad_transient_config config = {.method = FIBRAD_TRANSIENT_PATCHES, .heat = coarse};
     const fibrad_wall floor = {.kind = FIBRAD_WALL_PLANE, .plane = {.axis = 2, .at = -1.1}};
     const fibrad_scene_config scene = {.wall = &floor, .walls = 1};
     const double wall_temperature = 400, wall_emissivity = .5;
@@ -235,14 +200,14 @@ TEST(cancelled_span_writes_nothing) {
     fibrad_span span = {.temperature = temperature, .capacity = c.capacity, .duration = 1e-2, .power = c.power};
     span.wall_power = &wall_power, span.wall_energy = &energy;
     span.steps = span.refused = span.sweeps = 77, span.surroundings_energy = span.error = 77;
-    assert_ok(fibrad_transient_new(&c.transient, &scene, &c.spheres, &config, &run));
+    assert_ok(made_with(&c.made, &scene, &c.spheres, &coarse, &run));
     c.calls = 0, c.ask = 3; /* within the span */
     const fibrad_span before = span;
-    ck_assert_int_eq(fibrad_transient_advance(c.transient, &c.sources, &span), FIBRAD_E_CANCELLED);
+    ck_assert_int_eq(fibrad_bed_advance(c.made, &c.sources, &span), FIBRAD_E_CANCELLED);
     ck_assert_mem_eq(&span, &before, sizeof span);
     ck_assert_mem_eq(temperature, c.temperature, sizeof temperature);
     ck_assert(energy == 77 && wall_power == 77 && c.power[0] == 0);
     c.ask = 0;
-    assert_ok(fibrad_transient_advance(c.transient, &c.sources, &span));
+    assert_ok(fibrad_bed_advance(c.made, &c.sources, &span));
     ck_assert(energy != 77 && span.steps != 77 && temperature[CUBE - 1] < c.temperature[CUBE - 1]);
 }

@@ -47,7 +47,7 @@ TEST(two_spheres_match_the_exact_pair) {
 }
 
 /* Unit spheres are H apart. The error at 200,000 rays, and the mean length and angle of the rays, are those of
- * docs/reproduction.md. */
+ * docs/validation.md. */
 TEST(rays_have_the_errors_of_the_pebble_table) {
     static const struct {
         double h, error, length, angle;

@@ -33,7 +33,8 @@ TEST(help_is_short) {
     static const struct {
         const char *command;
         int options, all;
-    } commands[] = {{"factors", 28, 45}, {"heat", 28, 45}, {"join", 28, 45}, {"pair", 28, 45}, {"furnace", 28, 45}};
+    } commands[] = {{"factors", 28, 45}, {"heat", 28, 45}, {"conductivity", 28, 45},
+                    {"join", 28, 45},    {"pair", 28, 45}, {"furnace", 28, 45}};
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
         for (int all = 0; all < 2; ++all) {
             int lines = 0, options = 0;
@@ -154,8 +155,7 @@ static const struct {
     {{"heat", MONO, "--emissivity", ".5"}, "--temperature or --power is missing"},
     {{"heat", MONO, "--emissivity=.5", "--temperature", "-3"}, "--temperature: -3 is below absolute zero"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--patches=100"}, "--patches: 100 is not built in"},
-    {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--model=fine"},
-     "'fine' is none of patches, spheres and factors"},
+    {{"heat", MONO, "--model=spheres"}, "--model is not needed any more: powers at one time are by patches"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--error=.1", "--points=64"}, "leave out --directions"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--temperature-unit=F"}, "'F' is neither K nor C"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--ambient=-1"}, "--ambient: -1 is not within"},
@@ -320,7 +320,7 @@ TEST(blocked_pair) {
     SUCCEED("pair", "1", "1", "2", "--obstacle", "0.5,0,2,0.4", "--method", "surface", "--nf", "610");
     ck_assert_double_eq_tol(value_of("F12") / exact, 1, 1e-3);
     SUCCEED("pair", "1", "1", "0", "--method", "surface", "--no-correction");
-    ck_assert_double_eq_tol(value_of("F12") / 0.0755868184216124, 1 - .0475649, 1e-6); /* docs/reproduction.md */
+    ck_assert_double_eq_tol(value_of("F12") / 0.0755868184216124, 1 - .0475649, 1e-6); /* docs/validation.md */
     SUCCEED("pair", "1", "1", "2", "--obstacle", "50,0,2,0.4");
     const double beside = value_of("F12");
     ck_assert_double_eq_tol(beside, pair("1", "1", "2"), 1e-9);

@@ -327,18 +327,17 @@ static const char *tube_of(int layers) {
     return write_file(formatted("tube%d.csv", layers), text);
 }
 
-/* F_E of a bed without the sides of its tube is too low. All outputs say so: summary, table, object and picture. */
+/* F_E of a bed without the sides of its tube is too low. All outputs say so: summary, table and object. */
 TEST(open_sides_are_told) {
     static const char *const doubt = "F_E too low: radiation leaves the bed";
-    const char *tube = tube_of(24), *csv = in_folder("k.csv"), *json = in_folder("k.json"), *plot = in_folder("k.svg");
-    CONDUCTIVITY(tube, "--emissivity", "0.8", "--axis", "z", "--rays", "64", "-o", csv, "-o", json, "--plot", plot,
-                 "--json", in_folder("s.json"));
+    const char *tube = tube_of(24), *csv = in_folder("k.csv"), *json = in_folder("k.json");
+    CONDUCTIVITY(tube, "--emissivity", "0.8", "--axis", "z", "--rays", "64", "-o", csv, "-o", json, "--json",
+                 in_folder("s.json"));
     assert_has(said, "of what the core emits leaves the bed; F_E is too low. --wall closes the sides of a container");
     assert_begins(text_of("unreliable"), "z\n");
     assert_has(read_file(in_folder("s.json")), "leaves the bed; F_E is too low");
     assert_has(read_file(csv), formatted(",,,0,,,,,%s\n", doubt));
     assert_has(read_file(json), formatted("\"reliable\":false,\"warning\":\"%s\"", doubt));
-    assert_has(read_file(plot), ">radiation leaves the bed<");
 }
 
 /* Between insulated sides F_E is that of the flux between two plates. A periodic tube has the F_E of a long one. */
@@ -396,8 +395,6 @@ TEST(many_temperatures) {
         FAIL_WITH(2, "conductivity", cell, "--periodic", "6,6,6", "--emissivity", "1", "--temperature", wrong[k]);
         expect_message("--temperature: ", "");
     }
-    FAIL_WITH(2, "conductivity", cell, "--emissivity", "1", "--temperature", "3,4", "--plot", in_folder("k.svg"));
-    expect_message("--plot shows one temperature", "");
     FAIL_WITH(2, "conductivity", cell, "--emissivity", "1", "--temperature", "3,4", "--frame", "all", "-o",
               in_folder("k.*.csv"));
     assert_has(said, "a file for each frame has one temperature");

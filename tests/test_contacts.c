@@ -3,6 +3,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 
+#include "contact/contact_list.h"
 #include "host_owned.h"
 #include "scenes.h"
 #include "meshes.h"
@@ -84,10 +85,10 @@ static void join(struct joint *j, uint32_t first, uint32_t second, double conduc
 
 static void solve(struct joint *j) {
     const fibrad_spheres spheres = spheres_of(&j->bed);
-    OWNED_RADIATION *radiation;
-    assert_ok(fibrad_radiation_new(&radiation, &j->scene, &spheres, &j->config, NULL));
-    j->status = fibrad_radiation_solve(radiation, &j->sources, &j->result);
-    fibrad_radiation_describe(radiation, NULL, &j->fault);
+    OWNED_MADE *radiation;
+    assert_ok(made_with(&radiation, &j->scene, &spheres, &j->config, NULL));
+    j->status = fibrad_bed_solve(radiation, &j->sources, NULL, &j->result);
+    fibrad_bed_describe(radiation, NULL, &j->fault);
 }
 
 /* All powers add up to zero, and so do all flows through contacts. What a sphere of unknown temperature gains is what
@@ -317,7 +318,7 @@ LOOP_TEST(spheres_in_a_room, 2) {
     const fibrad_spheres spheres = spheres_of(&j->bed);
     const fibrad_exchange_rule rule = {
         .emissivity = j->emissivity, .wall_emissivity = j->wall_emissivity, .tolerance = 1e-3};
-    assert_ok(fibrad_exchange_factors(&j->scene, &spheres, &rule, NULL, NULL, &d));
+    assert_ok(exchange_of(&j->scene, &spheres, &rule, NULL, NULL, &d));
     for (uint32_t i = 0; i < n; i++) t[i] = isnan(j->temperature[i]) ? 1000 : j->temperature[i];
     by_newton(j, d, t, q);
     const struct compared c = compare(j, t, q);
@@ -408,9 +409,8 @@ TEST(a_pair_in_time) {
     const fibrad_spheres spheres = spheres_of(&bed);
     const double emissivity[2] = {0, 0}, capacity[2] = {300, 100}, h = 2.5;
     const uint32_t first = 0, second = 1;
-    OWNED_TRANSIENT *t;
-    assert_ok(
-        fibrad_transient_new(&t, NULL, &spheres, &(fibrad_transient_config){.method = FIBRAD_TRANSIENT_PATCHES}, NULL));
+    OWNED_MADE *t;
+    assert_ok(made_with(&t, NULL, &spheres, NULL, NULL));
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.emissivity = emissivity, sources.surroundings = 300;
@@ -419,16 +419,12 @@ TEST(a_pair_in_time) {
     const double mean = (300 * 1000 + 100 * 400) / 400., rate = h * (1 / 300. + 1 / 100.);
     for (int k = 1; k <= 5; k++) {
         fibrad_span span = {at, capacity, .duration = 12};
-        assert_ok(fibrad_transient_advance(t, &sources, &span));
+        assert_ok(fibrad_bed_advance(t, &sources, &span));
         const double apart = 600 * exp(-rate * 12 * k);
         ck_assert_double_le(fabs(at[0] - (mean + apart / 4)), 1e-4 * at[0]);
         ck_assert_double_le(fabs(at[1] - (mean - 3 * apart / 4)), 1e-4 * at[1]);
         ck_assert_double_le(fabs(300 * at[0] + 100 * at[1] - 400 * mean), 1e-9 * 400 * mean);
     }
-    OWNED_TRANSIENT *corrected;
-    fibrad_span span = {at, capacity, .duration = 1};
-    assert_ok(fibrad_transient_new(&corrected, NULL, &spheres, NULL, NULL));
-    ck_assert_int_eq(fibrad_transient_advance(corrected, &sources, &span), FIBRAD_E_ARGUMENT);
 }
 
 /* ---- spots and gas ---------------------------------------------------------------------------------------------- */
@@ -456,7 +452,7 @@ TEST(spots_of_a_pair_and_a_wall) {
         const double wall = spots == FIBRAD_SPOTS_LENS ? sqrt(1 - .98 * .98) : sqrt(.02);
         ck_assert_double_le(fabs(h[0] - 2 * 15 * .5 * (spots == FIBRAD_SPOTS_LENS ? lens : hertz)), 1e-9 * h[0]);
         ck_assert_double_le(fabs(h[1] - 4 * 30 * .5 * wall), 1e-9 * h[1]);
-        fibrad_contacts_free(list);
+        free(list);
     }
 }
 
@@ -485,7 +481,7 @@ LOOP_TEST(contacts_with_triangles, 2) {
     ck_assert_uint_gt(at_walls, 50);
     assert_near(sum[1], sum[0], 1e-12);
     assert_near(square[1], square[0], 1e-12);
-    for (int k = 0; k < 2; k++) fibrad_contacts_free(list[k]);
+    for (int k = 0; k < 2; k++) free(list[k]);
     free(mesh);
 }
 
@@ -515,8 +511,8 @@ TEST(contacts_of_many_sizes) {
     ck_assert_mem_eq(same->first, list->first, list->n * sizeof *list->first);
     ck_assert_mem_eq(same->second, list->second, list->n * sizeof *list->second);
     ck_assert_mem_eq(same->distance, list->distance, list->n * sizeof *list->distance);
-    fibrad_contacts_free(same);
-    fibrad_contacts_free(list);
+    free(same);
+    free(list);
 }
 
 /* A line through a sphere, a gap and another sphere or a wall. */
@@ -570,6 +566,6 @@ LOOP_TEST(gas_between_surfaces, 10) {
     ck_assert_int_eq(gsl_integration_qags(&f, touching, end * (1 - 1e-13), 0, 1e-11, 4000, space, &truth, &error), 0);
     gsl_integration_workspace_free(space);
     ck_assert_double_le(fabs(h / truth - 1), 1e-9);
-    fibrad_contacts_free(list);
+    free(list);
     bed_free(&bed);
 }

@@ -77,17 +77,16 @@ struct heat {
 static struct heat heat_of(const struct bed *bed, const fibrad_wall *plane, const double *temperature,
                            const double *emissivity, const double of_plane[2], double sky) {
     const fibrad_spheres spheres = spheres_of(bed);
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     fibrad_heat_sources sources;
     struct heat heat;
     fibrad_heat_result result = {.power = heat.power, .wall_power = &heat.plane};
-    assert_ok(
-        fibrad_radiation_new(&radiation, &(fibrad_scene_config){.wall = plane, .walls = 1}, &spheres, NULL, NULL));
+    assert_ok(made_with(&radiation, &(fibrad_scene_config){.wall = plane, .walls = 1}, &spheres, NULL, NULL));
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity;
     sources.wall_temperature = of_plane, sources.wall_emissivity = of_plane + 1;
     sources.surroundings = sky, sources.sigma = 1, sources.tolerance = 1e-8;
-    assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
+    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
     heat.sky = result.surroundings_power;
     return heat;
 }

@@ -132,21 +132,20 @@ TEST(beds_turn_with_the_axes) {
                                       &(fibrad_bed_rule){.beam = &(fibrad_beam_rule){.directions = 500}}, NULL, &f));
         const fibrad_exchange_rule rule = {
             .emissivity = emissivity, .wall_emissivity = wall, .directions = 100, .paths = 1000};
-        assert_ok(fibrad_exchange_factors(&can.config, &spheres, &rule, NULL, NULL, &d));
+        assert_ok(exchange_of(&can.config, &spheres, &rule, NULL, NULL, &d));
         for (uint32_t i = 0; i < can.bed.n; i++)
             for (int b = 0; b < 3; b++)
                 factor[turn][i][b] = matrix_row(&f->matrix, i).wall[b],
                 exchange[turn][i][b] = matrix_row(&d->matrix, i).wall[b];
-        fibrad_radiation *radiation;
+        fibrad_bed *radiation;
         fibrad_heat_sources sources;
         fibrad_heat_sources_init(&sources);
         sources.temperature = temperature, sources.emissivity = emissivity;
         sources.surroundings = 0, sources.wall_temperature = hot, sources.wall_emissivity = wall;
         fibrad_heat_result result = {.power = power[turn], .wall_power = at_wall};
-        assert_ok(
-            fibrad_radiation_new(&radiation, &can.config, &spheres, &(fibrad_heat_config){.directions = 40}, NULL));
-        assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
-        fibrad_radiation_free(radiation);
+        assert_ok(made_with(&radiation, &can.config, &spheres, &(fibrad_heat_config){.directions = 40}, NULL));
+        assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
+        fibrad_bed_free(radiation);
         power[turn][40] = at_wall[0];
         bed_free(&can.bed);
     }

@@ -278,7 +278,7 @@ static fibrad_bed_matrix *exchange(const struct bed *bed, const fibrad_exchange_
     const fibrad_bed_rule options = {.raw = raw};
     fibrad_run run = {.threads = 1};
     fibrad_bed_matrix *factors = NULL;
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, rule, &options, &run, &factors));
+    assert_ok(exchange_of(NULL, &spheres, rule, &options, &run, &factors));
     return factors;
 }
 

@@ -39,7 +39,7 @@ static fibrad_bed_matrix *factors_of(const struct room *room, double tolerance, 
         .emissivity = emissivity, .wall_emissivity = wall_emissivity, .tolerance = tolerance, .seed = seed};
     const fibrad_spheres spheres = spheres_of(&bed);
     fibrad_bed_matrix *factors = NULL;
-    assert_ok(fibrad_exchange_factors(&scene, &spheres, &rule, NULL, NULL, &factors));
+    assert_ok(exchange_of(&scene, &spheres, &rule, NULL, NULL, &factors));
     return factors;
 }
 

@@ -184,7 +184,7 @@ static fibrad_bed_matrix *factors_of(const struct hot_bed *h, uint32_t paths, ui
                                        .conductivity = h->relative,
                                        .node_emissivity = h->node};
     fibrad_bed_matrix *factors;
-    assert_ok(fibrad_exchange_factors(&h->config, &spheres, &rule, NULL, NULL, &factors));
+    assert_ok(exchange_of(&h->config, &spheres, &rule, NULL, NULL, &factors));
     return factors;
 }
 
@@ -221,13 +221,13 @@ static void powers_by_patches(const struct hot_bed *h, double *power) {
     const fibrad_spheres spheres = spheres_of(&h->bed);
     const fibrad_heat_config config = {.directions = 1500, .points = 128};
     fibrad_heat_sources sources;
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     fibrad_heat_result result = {.power = power};
     fibrad_heat_sources_init(&sources);
     sources.temperature = h->temperature, sources.emissivity = h->emissivity, sources.conductivity = h->conductivity;
     sources.surroundings = 1, sources.sigma = 1, sources.tolerance = 1e-6;
-    assert_ok(fibrad_radiation_new(&radiation, &h->config, &spheres, &config, NULL));
-    assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
+    assert_ok(made_with(&radiation, &h->config, &spheres, &config, NULL));
+    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
 }
 
 /* Powers by rows are those by patches, but for the noise of paths, which two seeds tell. */
@@ -256,7 +256,7 @@ TEST(good_conductors) {
     const fibrad_spheres spheres = spheres_of(&h.bed);
     const fibrad_exchange_rule plain = {.emissivity = h.emissivity, .paths = 2000, .directions = 400, .seed = 1};
     fibrad_bed_matrix *one, *all = factors_of(&h, 2000, 1);
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &plain, NULL, NULL, &one));
+    assert_ok(exchange_of(NULL, &spheres, &plain, NULL, NULL, &one));
     ck_assert(matrix_same_bits(&one->matrix, &all->matrix));
     powers_by_rows(&h, &one->matrix, power[0]);
     fibrad_bed_matrix_free(one);
@@ -290,7 +290,7 @@ TEST(refusals) {
                          k < 7 ? FIBRAD_E_ARGUMENT : FIBRAD_OK);
         OWNED_FACTORS *factors = NULL;
         const fibrad_spheres spheres = spheres_of(&bed);
-        ck_assert_int_eq(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors),
+        ck_assert_int_eq(exchange_of(NULL, &spheres, &rule, NULL, NULL, &factors),
                          k < 7 ? FIBRAD_E_ARGUMENT : FIBRAD_OK);
     }
 }

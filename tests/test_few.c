@@ -167,9 +167,9 @@ LOOP_TEST(exchange_of_two_far_spheres, FAR_COUNT * 2) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {.6 * d, -.48 * d, .64 * d, r});
     const fibrad_spheres spheres = spheres_of(&bed);
     OWNED_FACTORS *given = NULL, *wanted = NULL;
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e}, NULL, NULL, &given));
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e, .tolerance = 1e-4}, NULL,
-                                      NULL, &wanted));
+    assert_ok(exchange_of(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e}, NULL, NULL, &given));
+    assert_ok(
+        exchange_of(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e, .tolerance = 1e-4}, NULL, NULL, &wanted));
     const double exact = far_exchange(.8, free_of(&bed, 0, 1), free_of(&bed, 1, 0));
     ck_assert_double_eq_tol(factor_of(&given->matrix, 0, 1) / exact, 1, 1e-5);
     ck_assert_double_eq_tol(factor_of(&wanted->matrix, 0, 1) / exact, 1, 1e-5);
@@ -184,8 +184,8 @@ TEST(light_goes_on_from_a_sphere_that_no_window_meets) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {60, 0, 0, 1}, {58, 3, 0, 1});
     const fibrad_spheres spheres = spheres_of(&bed);
     OWNED_FACTORS *factors = NULL;
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e, .paths = 40000}, NULL,
-                                      NULL, &factors));
+    assert_ok(
+        exchange_of(NULL, &spheres, &(fibrad_exchange_rule){.emissivity = e, .paths = 40000}, NULL, NULL, &factors));
     const double direct = free_of(&bed, 0, 2), whole = factor_of(&factors->matrix, 0, 2);
     ck_assert_double_gt(whole - direct, .02 * free_of(&bed, 0, 1));
     ck_assert_double_le(whole - direct, .2 * free_of(&bed, 0, 1));
@@ -198,14 +198,14 @@ LOOP_TEST(heat_of_two_far_spheres, FAR_COUNT * 4) {
     const double temperature[] = {0, 1000};
     OWNED_BED bed = BED({0, 0, 0, 1}, {.6 * d, -.48 * d, .64 * d, r});
     const fibrad_spheres spheres = spheres_of(&bed);
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     fibrad_heat_sources sources;
     double power[2], error[2];
     fibrad_heat_result result = {.power = power, .power_error = error};
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = e, sources.surroundings = 0, sources.sigma = 1e-12;
-    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL));
-    assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
+    assert_ok(made_with(&radiation, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
     const double exact = 4 * 3.14159265358979 * grey * far_exchange(grey, free_of(&bed, 0, 1), free_of(&bed, 1, 0));
     ck_assert_double_eq_tol(power[0] / exact, 1, grey < 1 ? 1e-3 : 1e-6);
     ck_assert_double_le(fabs(power[0] - exact), error[0]);

@@ -207,7 +207,7 @@ TEST(units_of_columns_of_properties) {
         read_same(out, &steady);
         SUCCEED("heat", file, "--radius", "R", "--emissivity", ".8", "--temperature", "900", "--power", "P",
                 "--heat-capacity", "c", "--density", "rho", "--until", "60", "--ambient", "300", "--directions", "21",
-                "--patches", "24", "--model", "patches", "-o", out);
+                "--patches", "24", "-o", out);
         read_same(out, &timed);
     }
     const char *wrong = write_file("bed.csv", "x,y,z,r,k [W]\n0,0,0,1,3\n");
@@ -506,11 +506,20 @@ TEST(radii_of_growing_frames) {
 
 TEST(summary_says_what_was_computed) {
     const char *bed = write_file("bed.dump", frame("cgs", "700", "3", SORTED)), *json = in_folder("q.json");
-    static const char *const lines[] = {
-        "\nframe 0\n",          "\ntimestep 700\n",           "\nspheres 3\n",          "\nlength_unit cgs\n",
-        "\nradius_max 1\n",     "\nbox_high 8 8 8\n",         "\nperiods 0 0 0\n",      "\nmodel patches\n",
-        "\nemissivity 0.6\n",   "\ntemperature_K column T\n", "\nsurroundings_K 300\n", "\nwall_zmin_at 0\n",
-        "\nwall_zmin_K 1200\n", "\nwall_zmin_emissivity 1\n", "\nnamed_by ids\n"};
+    static const char *const lines[] = {"\nframe 0\n",
+                                        "\ntimestep 700\n",
+                                        "\nspheres 3\n",
+                                        "\nlength_unit cgs\n",
+                                        "\nradius_max 1\n",
+                                        "\nbox_high 8 8 8\n",
+                                        "\nperiods 0 0 0\n",
+                                        "\nemissivity 0.6\n",
+                                        "\ntemperature_K column T\n",
+                                        "\nsurroundings_K 300\n",
+                                        "\nwall_zmin_at 0\n",
+                                        "\nwall_zmin_K 1200\n",
+                                        "\nwall_zmin_emissivity 1\n",
+                                        "\nnamed_by ids\n"};
     SUCCEED(HEAT, bed, "--ambient", "300", "--wall", "zmin:temperature=1200", "--json", json);
     for (size_t k = 0; k < sizeof lines / sizeof *lines; ++k) assert_has(printed, lines[k]);
     assert_begins(printed, "file ");
@@ -571,8 +580,8 @@ TEST(inputs_stay) {
     for (int k = 0; k < 6; ++k) {
         const char *other_name = formatted("%s/./%s", folder, k == 1 ? "floor.*.vtp" : names[k]); /* of the same file */
         FAIL_WITH(2, "heat", path[0], "--temperature", "T", "--emissivity", law, "--wall", wall, "--ambient", ambient,
-                  "--until", "5", "--heat-capacity", "800", "--density", "2500", "--model", "patches", "--directions",
-                  "21", "--patches", "24", outputs[k], other_name);
+                  "--until", "5", "--heat-capacity", "800", "--density", "2500", "--directions", "21", "--patches",
+                  "24", outputs[k], other_name);
         assert_has(said, "is read in this run and would be replaced");
         ck_assert_str_eq(read_file(path[k]), k ? contents[k] : frame(NULL, "0", "3", SORTED));
     }

@@ -415,7 +415,4 @@ TEST(conductivities_are_above_zero) {
         ck_assert_uint_eq(fault.first, 0);
         assert_invalid(fibrad_heat_begin(p.heat, &p.sources));
     }
-    conductivity[0] = 1, p.sources.uniform = 1;
-    assert_invalid(fibrad_heat_check(p.heat, &p.sources, &fault));
-    ck_assert_int_eq(fault.why, FIBRAD_WHY_UNIFORM);
 }

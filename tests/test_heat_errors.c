@@ -23,7 +23,7 @@ struct given {
 static void solve(struct given *g) {
     const fibrad_spheres spheres = spheres_of(&g->bed);
     fibrad_heat_sources sources;
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     fibrad_run run = {.threads = 1};
     fibrad_heat_sources_init(&sources);
     for (int k = 0; k < MOST; k++) g->emissivity[k] = g->wall_emissivity[k] = 1;
@@ -33,8 +33,8 @@ static void solve(struct given *g) {
     g->result = (fibrad_heat_result){.power = g->power, .power_error = g->error, .surroundings_error = NAN};
     g->result.wall_power = g->wall_power, g->result.wall_error = g->wall_error;
     g->scene.wall = g->wall, g->scene.opening = &g->opening;
-    assert_ok(fibrad_radiation_new(&radiation, &g->scene, &spheres, &g->config, &run));
-    assert_ok(fibrad_radiation_solve(radiation, &sources, &g->result));
+    assert_ok(made_with(&radiation, &g->scene, &spheres, &g->config, &run));
+    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &g->result));
     bed_free(&g->bed);
 }
 

@@ -55,8 +55,8 @@ TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
         uint32_t planes, open;
         double radius;
     } cases[] = {{31, 32, 0}, {29, 34, 0}, {16, 32, 3}, {0, 48, 3}, {16, 32, 0}, {0, 48, 0}, {0, 2, 0}, {4, 59, 0}};
-    for (uint32_t k = 0; k < 2 * sizeof cases / sizeof *cases; k++) {
-        const uint32_t open = cases[k / 2].open;
+    for (uint32_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const uint32_t open = cases[k].open;
         struct problem p[2];
         double power[2][30], error[2][30], temperature[2][30], found[2][30];
         for (int closed = 0; closed < 2; closed++) {
@@ -67,10 +67,10 @@ TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
             q->sources.power = power[closed];
             q->walls = box_about(&q->bed);
             const double *at = q->walls.at;
-            q->walls.planes = cases[k / 2].planes | (closed ? open : 0), q->walls.open = closed ? 0 : open;
+            q->walls.planes = cases[k].planes | (closed ? open : 0), q->walls.open = closed ? 0 : open;
             q->walls.cylinder[0] = (at[0] + at[1]) / 2, q->walls.cylinder[1] = (at[2] + at[3]) / 2;
-            q->walls.cylinder[2] = cases[k / 2].radius > 0 ? hypot(at[1] - at[0], at[3] - at[2]) / 2 : 0;
-            q->sources.surroundings = .8, q->sources.uniform = k % 2;
+            q->walls.cylinder[2] = cases[k].radius > 0 ? hypot(at[1] - at[0], at[3] - at[2]) / 2 : 0;
+            q->sources.surroundings = .8;
             for (int w = 0; w < FIBRAD_WALLS; w++) {
                 const bool lid = open >> w & 1;
                 q->wall_temperature[w] = lid ? .8 : 1 + .1 * w, q->wall_emissivity[w] = lid ? 1 : .3;
@@ -178,7 +178,4 @@ TEST(conduction_of_a_random_bed) {
     const double black = even_conduction(&p, 1);
     assert_near(black, 1.061, .05);
     for (size_t k = 0; k < 4; k++) assert_near(even_conduction(&p, known[k][0]) / black, known[k][1] / 1.061, .02);
-    /* with one radiosity for each sphere, the bed conducts as if all spheres were black */
-    p.sources.uniform = 1;
-    assert_near(even_conduction(&p, .2), black, .03);
 }

@@ -35,7 +35,7 @@ static struct room room_of(uint64_t seed, uint32_t spheres) {
     return room;
 }
 
-static fibrad_radiation *radiation_of(const struct room *room) {
+static fibrad_bed *radiation_of(const struct room *room) {
     static const fibrad_heat_config config = {.directions = 32, .patches = 24, .wall_rays = 20000};
     fibrad_wall wall[WALLS];
     const fibrad_plane lid = {2, 1, room->size[2]};
@@ -43,12 +43,12 @@ static fibrad_radiation *radiation_of(const struct room *room) {
     for (int k = 0; k < WALLS; k++) wall[k] = plane_at(k / 2, k % 2, k % 2 ? room->size[k / 2] : 0);
     const fibrad_scene_config scene = {.wall = wall, .walls = WALLS, .opening = &lid, .openings = 1};
     fibrad_run run = {.threads = 1};
-    fibrad_radiation *radiation;
-    assert_ok(fibrad_radiation_new(&radiation, &scene, &spheres, &config, &run));
+    fibrad_bed *radiation;
+    assert_ok(made_with(&radiation, &scene, &spheres, &config, &run));
     return radiation;
 }
 
-static void solve(fibrad_radiation *radiation, struct room *room, double tolerance) {
+static void solve(fibrad_bed *radiation, struct room *room, double tolerance) {
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.temperature = room->temperature, sources.emissivity = room->emissivity;
@@ -59,7 +59,7 @@ static void solve(fibrad_radiation *radiation, struct room *room, double toleran
                                         .wall_power = room->wall_power,
                                         .wall_error = room->wall_error,
                                         .wall_absorbed = room->absorbed};
-    assert_ok(fibrad_radiation_solve(radiation, &sources, &room->result));
+    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &room->result));
 }
 
 /* The largest difference between the powers of walls of two solutions, over the larger of the power and 5 % of what the
@@ -78,7 +78,7 @@ TEST(gains_of_dim_walls) {
     for (uint64_t seed = 1; seed <= 12; seed++) {
         const uint32_t spheres = seed % 2 ? (uint32_t)seed : 16 + 2 * (uint32_t)seed;
         struct room found = room_of(seed, spheres), right = found;
-        OWNED_RADIATION *first = radiation_of(&found), *second = radiation_of(&right);
+        OWNED_MADE *first = radiation_of(&found), *second = radiation_of(&right);
         solve(first, &found, 0), solve(second, &right, 1e-12);
         const double difference = largest_difference(&found, &right);
         ck_assert_msg(difference < .002, "seed %d: %g", (int)seed, difference);
@@ -104,7 +104,7 @@ TEST(residuals_are_estimated) {
     struct covered walls = {0}, spheres = {0}, open = {0};
     for (uint64_t seed = 21; seed <= 36; seed++) {
         struct room found = room_of(seed, 20), right = found;
-        OWNED_RADIATION *first = radiation_of(&found), *second = radiation_of(&right);
+        OWNED_MADE *first = radiation_of(&found), *second = radiation_of(&right);
         solve(first, &found, 2e-2), solve(second, &right, 1e-12);
         for (int k = 0; k < WALLS; k++) compare(&walls, found.wall_power[k], right.wall_power[k], found.wall_error[k]);
         for (int i = 0; i < 20; i++) compare(&spheres, found.power[i], right.power[i], found.error[i]);
@@ -136,9 +136,9 @@ TEST(insulated_sides) {
         sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
         sources.insulated = insulated, sources.surroundings = 300;
         fibrad_heat_result result = {.power = &power, .wall_power = gained, .wall_error = error};
-        OWNED_RADIATION *radiation = NULL;
-        assert_ok(fibrad_radiation_new(&radiation, &scene, &spheres, &config, NULL));
-        assert_ok(fibrad_radiation_solve(radiation, &sources, &result));
+        OWNED_MADE *radiation = NULL;
+        assert_ok(made_with(&radiation, &scene, &spheres, &config, NULL));
+        assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
         ck_assert_msg(fabs(gained[5] - 30159) < .001 * 30159, "%d patches: %g", (int)patches, gained[5]);
         ck_assert_msg(fabs(gained[5] - 30159) < 2 * error[5], "%d patches: %g, error %g", (int)patches, gained[5],
                       error[5]);

@@ -37,13 +37,13 @@ LOOP_TEST(spheres_in_wide_cones, 3) {
                                 .centre = {side / 2, side / 2, 2 * side},
                                 .radius = 2};
     double black[SPHERES], rays[SPHERES], absorbed[SPHERES], first[SPHERES], error[SPHERES];
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_light_sources sources = {.light = &light, .lights = 1, .absorptivity = black};
     fibrad_light_result result = {.absorbed = absorbed, .absorbed_first = first, .absorbed_error = error};
     for (int i = 0; i < SPHERES; i++) black[i] = 1;
-    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, NULL, NULL));
-    assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+    assert_ok(made_with(&radiation, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_shine(radiation, &sources, &result));
     take_plain(&plain, &light, RAYS, rays);
     int beyond = 0, lit = 0;
     double worst = 0, squares = 0, said = 0;

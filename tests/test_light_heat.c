@@ -26,7 +26,7 @@ struct absorbed {
 };
 
 /* Checks that the fluxes of triangles that are at 0 K add up to the light that their wall absorbs. */
-static void check_sides(fibrad_radiation *radiation, const fibrad_scene_config *config, const double *eps,
+static void check_sides(fibrad_bed *radiation, const fibrad_scene_config *config, const double *eps,
                         const struct absorbed *a) {
     const struct fibrad_triangles *t = config->triangles;
     double flux[2 * 12], cold[100] = {0}, power[100], wall_power[6], sum = 0, all = 0;
@@ -35,8 +35,8 @@ static void check_sides(fibrad_radiation *radiation, const fibrad_scene_config *
     fibrad_heat_sources_init(&sources);
     sources.temperature = cold, sources.wall_temperature = cold, sources.surroundings = 0;
     sources.emissivity = eps, sources.wall_emissivity = a->wall_eps, sources.absorbed = a->result.patches;
-    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
-    ck_assert_int_eq(fibrad_radiation_sides(radiation, flux, NULL), 0);
+    ck_assert_int_eq(fibrad_bed_solve(radiation, &sources, NULL, &result), 0);
+    ck_assert_int_eq(fibrad_bed_sides(radiation, flux, NULL), 0);
     for (uint32_t k = 0; k < t->n; k++) {
         double origin[3], u[3], v[3], n[3];
         plain_edges(t, k, origin, u, v), plain_cross(u, v, n);
@@ -58,7 +58,7 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
                          {0},
                          {0}};
     double *eps = malloc(bed->n * sizeof *eps);
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed->x, .y = bed->y, .z = bed->z, .r = bed->r, .n = bed->n};
     const fibrad_light_sources sources = {
         .light = light, .lights = 1, .absorptivity = eps, .wall_absorptivity = a.wall_eps};
@@ -67,8 +67,8 @@ static struct absorbed absorb_light(const struct bed *bed, const fibrad_scene_co
     a.result = (fibrad_light_result){.absorbed = a.sphere, .absorbed_first = a.first, .absorbed_error = a.error};
     a.result.wall_absorbed = a.wall, a.result.wall_absorbed_first = a.wall_first,
     a.result.wall_absorbed_error = a.wall_error;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, config, &spheres, NULL, NULL), 0);
-    ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &a.result), 0);
+    ck_assert_int_eq(made_with(&radiation, config, &spheres, NULL, NULL), 0);
+    ck_assert_int_eq(fibrad_bed_shine(radiation, &sources, &a.result), 0);
     if (config->triangles) check_sides(radiation, config, eps, &a);
     free(eps);
     double sum = a.result.transmitted + a.result.reflected;
@@ -257,16 +257,16 @@ TEST(light_on_a_side_of_no_wall) {
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
     const double eps = .5;
     double absorbed[2], first[2];
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = 1};
     const fibrad_light_sources sources = {
         .light = &light, .lights = 1, .absorptivity = &eps, .wall_absorptivity = &eps};
     fibrad_light_result result = {
         .absorbed = absorbed, .absorbed_first = first, .wall_absorbed = absorbed + 1, .wall_absorbed_first = first + 1};
     fibrad_fault fault;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
-    ck_assert_int_eq(fibrad_radiation_shine(radiation, &sources, &result), FIBRAD_E_BACK);
-    fibrad_radiation_describe(radiation, NULL, &fault);
+    ck_assert_int_eq(made_with(&radiation, &config, &spheres, NULL, NULL), 0);
+    ck_assert_int_eq(fibrad_bed_shine(radiation, &sources, &result), FIBRAD_E_BACK);
+    fibrad_bed_describe(radiation, NULL, &fault);
     ck_assert_uint_eq(fault.triangle, 0);
 }
 
@@ -302,7 +302,7 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
         OWNED_ABSORBED a = absorb_light(&bed, &config, &light, .4, .4);
         mean += (1 - a.result.reflected) / (RINGS * TURNS);
     }
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = bed.n};
     fibrad_heat_sources sources;
     fibrad_heat_result result = {.power = power, .wall_power = &wall_power};
@@ -310,8 +310,8 @@ TEST(emissivity_of_a_face_is_its_mean_absorptance) {
     for (int i = 0; i < 40; i++) hot[i] = 1000, eps[i] = .4;
     sources.temperature = hot, sources.emissivity = eps, sources.surroundings = 0;
     sources.wall_temperature = &wall_hot, sources.wall_emissivity = &wall_eps;
-    ck_assert_int_eq(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL), 0);
-    ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &result), 0);
+    ck_assert_int_eq(made_with(&radiation, &config, &spheres, NULL, NULL), 0);
+    ck_assert_int_eq(fibrad_bed_solve(radiation, &sources, NULL, &result), 0);
     const double emissivity = result.surroundings_power / (FIBRAD_STEFAN_BOLTZMANN * 1e12 * side * side);
     printf("face: emissivity %.4f, mean absorptance %.4f\n", emissivity, mean);
     ck_assert_double_eq_tol(emissivity, mean, .01);
@@ -326,7 +326,7 @@ TEST(nothing_absorbs_less_than_its_first_light) {
     const fibrad_scene_config config = {.wall = &floor, .walls = 1};
     for (int k = 0; k < 6; k++) {
         OWNED_BED bed = bed_empty();
-        OWNED_RADIATION *radiation = NULL;
+        OWNED_MADE *radiation = NULL;
         double eps[CUBE], absorbed[CUBE], first[CUBE], wall, wall_first, sum = 0;
         const double of_wall = .4;
         for (uint32_t i = 0; i < CUBE; i++) {
@@ -343,8 +343,8 @@ TEST(nothing_absorbs_less_than_its_first_light) {
             .light = &light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &of_wall};
         fibrad_light_result result = {
             .absorbed = absorbed, .absorbed_first = first, .wall_absorbed = &wall, .wall_absorbed_first = &wall_first};
-        assert_ok(fibrad_radiation_new(&radiation, &config, &spheres, &coarse, NULL));
-        assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+        assert_ok(made_with(&radiation, &config, &spheres, &coarse, NULL));
+        assert_ok(fibrad_bed_shine(radiation, &sources, &result));
         for (int i = 0; i < CUBE; i++) {
             ck_assert_double_ge(first[i], 0);
             ck_assert_double_ge(absorbed[i], first[i]);

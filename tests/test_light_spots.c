@@ -98,7 +98,7 @@ static void take_plain(const struct spot_scene *s, int rays, double share[MOST +
 static void take_ours(const struct spot_scene *s, double share[MOST + 1], double error[MOST + 1], int threads) {
     fibrad_run run = {.threads = threads};
     double eps[SPHERES], first[MOST];
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&s->bed);
     const fibrad_light_sources sources = {
         .light = &s->light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &s->of_floor};
@@ -110,8 +110,8 @@ static void take_ours(const struct spot_scene *s, double share[MOST + 1], double
                                   .wall_absorbed_error = error + SPHERES};
     for (int i = 0; i < SPHERES; i++) eps[i] = s->absorptivity;
     share[SPHERES] = error[SPHERES] = 0;
-    assert_ok(fibrad_radiation_new(&radiation, &s->config, &spheres, NULL, &run));
-    assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+    assert_ok(made_with(&radiation, &s->config, &spheres, NULL, &run));
+    assert_ok(fibrad_bed_shine(radiation, &sources, &result));
     share[MOST] = result.reflected + result.transmitted, error[MOST] = result.error;
     assert_near(result.incident, 1, 1e-9);
 }
@@ -171,10 +171,10 @@ TEST(a_small_spot_near_a_contact) {
     double absorbed[2], first[2], error[2];
     fibrad_light_result result = {.absorbed = absorbed, .absorbed_first = first, .absorbed_error = error};
     for (int k = 0; k < 2; k++) {
-        OWNED_RADIATION *radiation = NULL;
+        OWNED_MADE *radiation = NULL;
         const fibrad_heat_config config = {.patches = k ? 384 : 96};
-        assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, NULL));
-        assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+        assert_ok(made_with(&radiation, NULL, &spheres, &config, NULL));
+        assert_ok(fibrad_bed_shine(radiation, &sources, &result));
         for (int i = 0; i < 2; i++) {
             printf("sphere %d: %.5f, said %.5f, right %.5f\n", i, absorbed[i], error[i], light_of[i]);
             ck_assert_double_eq_tol(absorbed[i], light_of[i], (k ? .001 : .003) * 1.0554);
@@ -202,7 +202,7 @@ TEST(shadows_on_an_endless_floor) {
     plain.low[2] = low[2] - .02;
     const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1 / area};
     double absorbed[FEW], first[FEW], error[FEW], wall, wall_first, rays[FEW] = {0};
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_light_sources sources = {
         .light = &light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &of_floor};
@@ -211,8 +211,8 @@ TEST(shadows_on_an_endless_floor) {
                                   .absorbed_error = error,
                                   .wall_absorbed = &wall,
                                   .wall_absorbed_first = &wall_first};
-    assert_ok(fibrad_radiation_new(&radiation, &config, &spheres, NULL, NULL));
-    assert_ok(fibrad_radiation_shine(radiation, &sources, &result));
+    assert_ok(made_with(&radiation, &config, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_shine(radiation, &sources, &result));
 #pragma omp parallel for schedule(static) reduction(+ : rays[:FEW])
     for (int k = 0; k < RAYS; k++) {
         uint64_t state = (uint64_t)k * 1000003u;

@@ -1,5 +1,6 @@
 /* test_mesh.c - triangles in a scene: closed forms, planes and cylinders made of triangles, closure, random triangles.
  * SPDX-License-Identifier: MIT */
+#include "base/random.h"
 #include "grey_rules.h"
 #include "scenes.h"
 #include "meshes.h"

@@ -527,7 +527,4 @@ TEST(temperatures_of_triangles) {
     FAIL_WITH(2, "heat", bed, "--emissivity", "1", "--temperature", "T", "--wall",
               formatted("zmin:at=-5:temperatures=%s", column));
     assert_has(said, "zmin has no triangles");
-    FAIL_WITH(2, "heat", bed, "--length-unit", "m", "--wall", mesh, STATE, in_folder("t.*.vtp"), "--until", "10",
-              "--heat-capacity", "800", "--density", "2500", "--model", "factors");
-    assert_has(said, "--model factors: triangles cannot have temperatures of their own");
 }

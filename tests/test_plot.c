@@ -3,7 +3,6 @@
 
 #include "cli/message.h"
 #include "plot/plot_bed.h"
-#include "plot/plot_conductivity.h"
 #include "plot/plot_heat.h"
 #include "host_owned.h"
 #include "scenes.h"
@@ -64,24 +63,18 @@ static struct text text_of(const char *g) {
 }
 
 /* Checks that all texts lie within the picture, none at its very edge, and that no two of one line overlap. */
-static void assert_texts_inside(const char *svg) {
+static void assert_texts_inside(const char *svg, double high) {
     struct text text[400];
     int texts = 0;
     for (const char *g = svg; (g = strstr(g, "<g transform=\"translate(")) != NULL; ++g) {
         const struct text t = text[texts++] = text_of(g);
-        ck_assert_msg(t.left > 12 && t.right < 1488 && t.y > 12 && t.y < 1228, "%.90s", g);
+        ck_assert_msg(t.left > 12 && t.right < 1488 && t.y > 12 && t.y < high - 12, "%.90s", g);
         ck_assert_int_lt(texts, 400);
         for (int k = 0; k + 1 < texts; ++k)
             ck_assert_msg(fabs(text[k].y - t.y) > 1 || text[k].right <= t.left || t.right <= text[k].left,
                           "%.20s over %.20s", text[k].at, t.at);
     }
-    ck_assert_int_gt(texts, 40);
-}
-
-static uint32_t count_of(const char *svg, const char *words) {
-    uint32_t count = 0;
-    for (const char *at = svg; (at = strstr(at, words)) != NULL; ++at) ++count;
-    return count;
+    ck_assert_int_gt(texts, 20);
 }
 
 /* ---- beds -------------------------------------------------------------------------------------------------------- */
@@ -110,7 +103,7 @@ LOOP_TEST(small_and_large_beds, 4) {
         const char *power;
     } cases[] = {{1, NULL}, {1e-3, "-3"}, {1e-5, "-6"}, {1e5, "3"}};
     OWNED char *svg = picture_of_bed(cases[_i].size, false);
-    assert_texts_inside(svg);
+    assert_texts_inside(svg, 1240);
     assert_has(svg, "bed.csv");
     assert_has(svg, "Escaped fraction");
     assert_lacks(svg, "folder");
@@ -120,7 +113,7 @@ LOOP_TEST(small_and_large_beds, 4) {
 
 TEST(a_bed_between_walls) {
     OWNED char *svg = picture_of_bed(1, true);
-    assert_texts_inside(svg);
+    assert_texts_inside(svg, 1240);
     assert_has(svg, "Fraction to walls and out of the bed");
     assert_has(svg, "goes to walls");
     assert_has(svg, "stroke='rgb(140, 140, 140)'"); /* the wall */
@@ -131,81 +124,48 @@ TEST(a_bed_between_walls) {
 struct heat_shown {
     const struct bed *bed;
     const struct walls *walls;
-    const double *temperature, *power, *wall_temperature, *wall_power;
-    double surroundings_temperature, surroundings_power;
-    bool found;             /* temperatures of spheres were found */
+    const double *temperature, *power, *wall_temperature;
     const double *absorbed; /* NULL: there is no light */
     struct plot_plane plane;
 };
 
 static int draw_heat(const struct output *output, const void *heat_shown) {
     const struct heat_shown *shown = heat_shown;
-    double given[30];
-    for (uint32_t i = 0; i < shown->bed->n; ++i) given[i] = shown->found ? NAN : 0;
-    const fibrad_heat_sources sources = {.temperature = given, .surroundings = shown->surroundings_temperature};
     const fibrad_heat_result result = {.temperature = (double *)shown->temperature,
                                        .power = (double *)shown->power,
-                                       .wall_temperature = (double *)shown->wall_temperature,
-                                       .wall_power = (double *)shown->wall_power,
-                                       .surroundings_power = shown->surroundings_power};
+                                       .wall_temperature = (double *)shown->wall_temperature};
     const fibrad_light_result light = {.absorbed = (double *)shown->absorbed};
-    const struct contents what = {.bed = shown->bed,
-                                  .walls = shown->walls,
-                                  .sources = &sources,
-                                  .result = &result,
-                                  .light = shown->absorbed ? &light : NULL};
+    const struct contents what = {
+        .bed = shown->bed, .walls = shown->walls, .result = &result, .light = shown->absorbed ? &light : NULL};
     return plot_heat(output, "bed's.dump", &what, &shown->plane);
 }
 
-/* Three spheres have lengths in millimetres. The picture tells what gains power, what loses it, and who else takes
- * part. */
-TEST(where_heat_goes) {
+/* Three spheres have lengths in millimetres. */
+TEST(slices_of_heat) {
     OWNED_BED bed = BED({0, 0, 0, 1e-3}, {.003, 0, 0, 1e-3}, {0, 0, .004, 1e-3});
     bed.metres = 1;
-    const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25};
-    const double wall_temperature[] = {412, 900}, wall_power[] = {3.125, -.5};
+    const double temperature[] = {300, 1200.5, 777}, power[] = {1.5, -4.25, .25}, wall_temperature[] = {412, 900};
     const struct walls walls = {.count = 2, .wall = {plane_at(2, 0, -.001), cylinder_at(0, 0, .0044)}};
-    struct heat_shown what = {&bed,       &walls, temperature, power,         wall_temperature,
-                              wall_power, 293,    -.125,       .found = false};
+    struct heat_shown what = {
+        .bed = &bed, .walls = &walls, .temperature = temperature, .power = power, .wall_temperature = wall_temperature};
     OWNED char *svg = drawn(draw_heat, &what);
-    assert_texts_inside(svg);
-    static const char *const told[] = {"bed's.dump",
-                                       "3 spheres of 300 to 1200.5 K lose 2.5 W by radiation",
-                                       "Temperature [K], slice at y = 0 mm",
-                                       "x [mm]",
-                                       "Net power by height",
-                                       ">1.75<", /* gained */
-                                       ">-4.25<",
-                                       ">zmin<",
-                                       ">surroundings<",
-                                       ">412 K<",
-                                       ">3.125<",
-                                       ">cylinder<",
-                                       ">900 K<",
-                                       ">-0.5<",
-                                       ">293 K<",
-                                       ">-0.125<"};
+    assert_texts_inside(svg, 700);
+    static const char *const told[] = {"bed's.dump", "3 spheres of 300 to 1200.5 K lose 2.5 W",
+                                       "Temperature [K], slice at y = 0 mm", "Net power [W], slice at y = 0 mm",
+                                       "x [mm]"};
     for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_has(svg, told[k]);
     free(svg);
     bed.metres = 1e-3; /* the same lengths, from a file in millimetres */
     svg = drawn(draw_heat, &what);
-    assert_has(svg, "layers of 2 ");
     assert_has(svg, "x [\302\265m]");
     free(svg);
 
-    /* there are neither walls nor surroundings, and nothing flows */
+    /* there are no walls, and nothing flows */
     const double none[] = {0, 0, 0};
-    what = (struct heat_shown){.bed = &bed,
-                               .walls = &(struct walls){0},
-                               .temperature = temperature,
-                               .power = none,
-                               .surroundings_temperature = NAN,
-                               .surroundings_power = NAN};
+    what = (struct heat_shown){.bed = &bed, .walls = &(struct walls){0}, .temperature = temperature, .power = none};
     svg = drawn(draw_heat, &what);
-    assert_texts_inside(svg);
+    assert_texts_inside(svg, 700);
     assert_has(svg, "gain 0 W");
-    assert_lacks(svg, "surroundings");
-    ck_assert_uint_eq(count_of(svg, "that gain"), 1);
 }
 
 /* Tics and titles of a tall bed, of a flat one and across z do not overlap, and lie within the picture. */
@@ -224,51 +184,36 @@ LOOP_TEST(tall_and_flat_beds, 3) {
                                     .walls = &(struct walls){0},
                                     .temperature = temperature,
                                     .power = power,
-                                    .surroundings_temperature = 293,
-                                    .surroundings_power = -.125,
                                     .plane = {.axis = _i == 2 ? 'z' : 0}};
     OWNED char *svg = drawn(draw_heat, &what);
-    assert_texts_inside(svg);
+    assert_texts_inside(svg, 700);
     assert_has(svg, _i == 2 ? ">y [mm]<" : ">z [m]<");
     assert_has(svg, _i == 2 ? ", slice at z = " : ", slice at y = 0 m");
 }
 
-/* Powers have prefixes, and nothing is -0. */
+/* Powers have prefixes. */
 TEST(prefixes_of_powers) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
     bed.metres = 1;
-    const double temperature[] = {300, 1200, 777}, power[] = {125e3, 50e3, -0.};
-    const struct walls walls = {.count = 1, .wall = {plane_at(2, 0, -1)}};
-    const double wall_temperature = 412, wall_power = -0.;
-    struct heat_shown what = {&bed,        &walls, temperature, power,         &wall_temperature,
-                              &wall_power, 293,    -175e3,      .found = false};
+    const double temperature[] = {300, 1200, 777}, power[] = {125e3, 50e3, -0.}, small[] = {3e-6, -2e-6, 1e-6};
+    struct heat_shown what = {.bed = &bed, .walls = &(struct walls){0}, .temperature = temperature, .power = power};
     OWNED char *svg = drawn(draw_heat, &what);
-    static const char *const told[] = {"gain 175 kW by radiation",
-                                       "Net power [kW], slice",
-                                       "power of a layer [kW]",
-                                       "lost below [kW]",
-                                       ">175<",
-                                       ">-175<"};
-    for (size_t k = 0; k < sizeof told / sizeof *told; ++k) assert_has(svg, told[k]);
-    assert_lacks(svg, ">-0<");
-    assert_lacks(svg, "> -0<");
+    assert_has(svg, "gain 175 kW");
+    assert_has(svg, "Net power [kW], slice");
     assert_lacks(svg, "e+0");
-    const double small[] = {3e-6, -2e-6, 1e-6};
     free(svg);
-    what.power = small, what.surroundings_power = -2e-6;
+    what.power = small;
     svg = drawn(draw_heat, &what);
     assert_has(svg, "Net power [\302\265W], slice");
-    assert_has(svg, "gain 2 \302\265W by radiation");
+    assert_has(svg, "gain 2 \302\265W");
 }
 
-/* What is the same for all spheres does not fill a panel: a second slice, absorbed light or, within a cylinder,
- * temperatures against radius take its place. */
-TEST(no_panel_of_one_colour) {
+/* What is the same for all spheres does not fill a slice: a second plane or absorbed light takes its place. */
+TEST(no_slice_of_one_colour) {
     OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
     bed.metres = 1;
     const double temperature[] = {300, 1200, 777}, same[] = {-40, -40, -40}, light[] = {1, 2, 5};
-    struct walls walls = {0};
-    struct heat_shown what = {&bed, &walls, temperature, same, temperature, temperature, 293, 120, .found = true};
+    struct heat_shown what = {.bed = &bed, .walls = &(struct walls){0}, .temperature = temperature, .power = same};
     OWNED char *svg = drawn(draw_heat, &what);
     assert_lacks(svg, "Net power [W], slice");
     assert_has(svg, "Temperature [K], slice at y = 0 m");
@@ -279,14 +224,7 @@ TEST(no_panel_of_one_colour) {
     assert_has(svg, "they absorb 8 W of light");
     assert_has(svg, "Absorbed light [W], slice at y = 0 m");
     free(svg);
-    walls.count = 1, walls.wall[0] = cylinder_at(1, 0, 4);
-    what.absorbed = NULL;
-    svg = drawn(draw_heat, &what);
-    assert_has(svg, "Temperature by radius, rings of 1 m");
-    assert_has(svg, "Temperature by height");
-    assert_texts_inside(svg);
-    free(svg);
-    what.found = false, what.temperature = same, what.power = temperature, walls.count = 0;
+    what.absorbed = NULL, what.temperature = same, what.power = temperature;
     svg = drawn(draw_heat, &what);
     assert_has(svg, "Net power [W], slice at y");
     assert_has(svg, "Net power [W], slice at x");
@@ -314,36 +252,7 @@ TEST(planes_of_slices) {
     ck_assert_str_eq(slice.place, "x = 0");
 }
 
-/* Names are shown as they are. Names of many walls stand aslant and apart from each other. Temperatures that were found
- * are shown by height. */
-TEST(many_walls) {
-    OWNED_BED bed = BED({0, 0, 0, 1}, {3, 0, 0, 1}, {0, 0, 4, 1});
-    bed.metres = 1;
-    static struct meshes meshes;
-    static struct walls walls = {.count = 9, .meshes = &meshes};
-    double temperature[9], power[9];
-    for (int k = 0; k < 9; ++k) {
-        walls.wall[k] = (fibrad_wall){.kind = FIBRAD_WALL_MESH};
-        snprintf(meshes.name[k], sizeof meshes.name[k], "wall_of_tube_%d", k);
-        temperature[k] = 300 + k, power[k] = k - 4;
-    }
-    struct heat_shown what = {&bed, &walls, temperature, power, temperature, power, 293, -.125, .found = true};
-    OWNED char *svg = drawn(draw_heat, &what);
-    assert_texts_inside(svg);
-    assert_has(svg, ">wall_of_tube_0, 300 K<");
-    assert_has(svg, ">wall_of_tube_8, 308 K<");
-    assert_has(svg, ">surroundings, 293 K<");
-    assert_has(svg, "rotate(-40");
-    assert_has(svg, "Temperature by height");
-    assert_lacks(svg, "Net power by height");
-    free(svg);
-    walls.count = 2, what.found = false;
-    svg = drawn(draw_heat, &what);
-    assert_has(svg, ">wall_of_tube_1<");
-    assert_has(svg, "Net power by height");
-}
-
-/* ---- exchange and conductivity ----------------------------------------------------------------------------------- */
+/* ---- exchange --------------------------------------------------------------------------------------------------- */
 
 TEST(exchange_factors_shown) {
     OWNED_BED bed = packing(60, .4, .6, .4, 3, false);
@@ -352,39 +261,12 @@ TEST(exchange_factors_shown) {
     for (int i = 0; i < 60; ++i) emissivity[i] = .5;
     const fibrad_exchange_rule rule = {.emissivity = emissivity};
     OWNED_FACTORS *factors;
-    assert_ok(fibrad_exchange_factors(NULL, &spheres, &rule, NULL, NULL, &factors));
+    assert_ok(exchange_of(NULL, &spheres, &rule, NULL, NULL, &factors));
     const struct contents what = {.bed = &bed, .factors = factors, .walls = &(struct walls){0}, .grey = &rule};
     OWNED char *svg = drawn(draw_bed, &what);
-    assert_texts_inside(svg);
+    assert_texts_inside(svg, 1240);
     assert_has(svg, "exchange factors; row sums");
     assert_has(svg, "Exchange factor against distance");
     assert_lacks(svg, "View factor");
     assert_lacks(svg, "nothing between");
-}
-
-static int draw_conduction(const struct output *output, const void *what) {
-    return plot_conduction(output, "folder/bed_1.dump", what);
-}
-
-TEST(conductivity_shown) {
-    struct conduction what = {.solid_fraction = .61,
-                              .emitters = 49,
-                              .factor = {.75, .76, .77},
-                              .error = {.01, .01, .01},
-                              .axis = -1,
-                              .temperature = 1200,
-                              .k = {.3, .31, .32},
-                              .steady = {NAN, NAN, NAN},
-                              .steady_error = {NAN, NAN, NAN}};
-    OWNED char *svg = drawn(draw_conduction, &what);
-    assert_has(svg, "bed_1.dump");
-    assert_has(svg, "solid fraction 0.610, 49 spheres emit, 1200 K");
-    assert_has(svg, ">k = 0.31 W/(m K)<");
-    assert_lacks(svg, "plates");
-    free(svg);
-    what.axis = 2, what.steady[2] = .78, what.steady_error[2] = .01, what.temperature = NAN;
-    svg = drawn(draw_conduction, &what);
-    assert_has(svg, "between two plates");
-    assert_has(svg, ">z<");
-    ck_assert(!strstr(svg, ">x<") && !strstr(svg, "k = "));
 }

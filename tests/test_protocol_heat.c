@@ -151,23 +151,6 @@ TEST(moved_after_a_solution) {
     }
 }
 
-/* After a move there and back, a second solution has the bits that it has without moves. */
-TEST(moved_there_and_back) {
-    const struct contents c = contents_of(18), d = changed(&c, 3);
-    ENDED struct problem *p = begin_problem(&c, 0), *still = begin_problem(&c, 0);
-    trace_all(p), trace_all(still);
-    solve(p), solve(still);
-    build(p, &d);
-    assert_ok(fibrad_heat_move(p->heat, p->scene));
-    build(p, &c);
-    ck_assert_int_eq(fibrad_heat_trace(p->heat, &p->work, 0), FIBRAD_E_STATE);
-    assert_ok(fibrad_heat_move(p->heat, p->scene));
-    trace_all(p);
-    p->temperature[0] = still->temperature[0] = 3;
-    solve(p), solve(still);
-    assert_like_powers(p, still);
-}
-
 /* If a move is refused, everything stays as it was: the solution can be read, and another one begun. */
 TEST(moves_refused) {
     const struct contents c = contents_of(19);

@@ -142,7 +142,6 @@ TEST(nothing_depends_on_threads) {
         {.beam = &(fibrad_beam_rule){.tolerance = .02}, .wanted = wanted},
         {.beam = &(fibrad_beam_rule){.directions = 21}, .drop = 1e-3},
         {.cast = &(fibrad_cast_rule){.rays = 300}},
-        {.surface = &(fibrad_surface_rule){.nodes = 13, .cutoff = 3}},
     };
     for (size_t k = 0; k < sizeof options / sizeof *options; k++) {
         fibrad_bed_matrix *first = NULL, *next;
@@ -171,23 +170,16 @@ TEST(exchange_does_not_depend_on_threads) {
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[150];
-    fibrad_displacement moved[3][150];
     for (int i = 0; i < 150; i++) emissivity[i] = .3 + i / 300.;
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
-    const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 50};
     fibrad_bed_matrix *first = NULL, *next;
-    memset(moved, 0, sizeof moved);
     for (int t = 0; t < 3; t++) {
         fibrad_run run = {.threads = threads[t]};
-        fibrad_scene_facts facts;
-        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, NULL, &run, &next));
+        assert_ok(exchange_of(&config, &spheres, &rule, NULL, &run, &next));
         ck_assert_uint_gt(next->rays, 150 * 50);
         if (first) ck_assert(matrix_same_bits(&first->matrix, &next->matrix) && first->rays == next->rays);
         fibrad_bed_matrix_free(first);
         first = next;
-        assert_ok(fibrad_displacements(&config, &spheres, &carried, NULL, &run, moved[t], &facts));
-        ck_assert_int_eq(memcmp(moved[t], moved[0], sizeof moved[0]), 0);
-        ck_assert_uint_eq(facts.spheres, 150);
     }
     ck_assert_double_lt(first->reciprocity_error, 1e-12);
     fibrad_bed_matrix_free(first);
@@ -200,22 +192,17 @@ TEST(reflectors_have_empty_rows) {
     const fibrad_scene_config config = box_of(&bed);
     const fibrad_spheres spheres = spheres_of(&bed);
     double emissivity[150];
-    fibrad_displacement moved[150];
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .directions = 20, .paths = 50};
-    const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 50};
     for (int all = 0; all <= 1; all++)
         for (int raw = 0; raw <= 1; raw++) {
             OWNED_FACTORS *factors = NULL;
             for (int i = 0; i < 150; i++) emissivity[i] = all || i % 5 == 0 ? 0 : .3;
-            assert_ok(
-                fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_rule){.raw = raw}, NULL, &factors));
+            assert_ok(exchange_of(&config, &spheres, &rule, &(fibrad_bed_rule){.raw = raw}, NULL, &factors));
             ck_assert_double_le(factors->closure_error, 1e-12);
             if (!raw) ck_assert_double_le(factors->reciprocity_error, 1e-14);
             ck_assert(factors->reciprocity_error >= 0 && (factors->rays > 0) == !all);
             for (uint32_t i = 0; i < 150; i++)
                 ck_assert_double_le(fabs(matrix_total(&factors->matrix, i) - (emissivity[i] > 0)), 1e-12);
-            assert_ok(fibrad_displacements(&config, &spheres, &carried, NULL, NULL, moved, NULL));
-            for (uint32_t i = 0; i < 150; i++) ck_assert((moved[i].square[0] > 0) == (emissivity[i] > 0));
         }
 }
 
@@ -253,17 +240,16 @@ TEST(factors_in_files) {
         OWNED_FACTORS *here = NULL, *there = NULL;
         fibrad_run run = {.threads = threads[k]};
         filed.scratch = folder;
-        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &kept, NULL, &here));
-        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &filed, &run, &there));
+        assert_ok(exchange_of(&config, &spheres, &rule, &kept, NULL, &here));
+        assert_ok(exchange_of(&config, &spheres, &rule, &filed, &run, &there));
         ck_assert(matrix_same_bits(&here->matrix, &there->matrix));
         ck_assert(here->reciprocity_error == there->reciprocity_error && here->closure_error == there->closure_error);
         ck_assert(is_filed(there->matrix.f, folder));
     }
     ck_assert_int_eq(rmdir(folder), 0); /* empty */
     fibrad_bed_matrix *none;
-    ck_assert_int_eq(
-        fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_rule){.scratch = folder}, NULL, &none),
-        FIBRAD_E_FILE);
+    ck_assert_int_eq(exchange_of(&config, &spheres, &rule, &(fibrad_bed_rule){.scratch = folder}, NULL, &none),
+                     FIBRAD_E_FILE);
     ck_assert_ptr_null(none);
 }
 
@@ -295,19 +281,12 @@ TEST(faults_name_spheres) {
     for (int i = 0; i < 100; i++) emissivity[i] = .5;
     emissivity[70] = emissivity[71] = emissivity[3] = NAN;
     const fibrad_exchange_rule rule = {.emissivity = emissivity, .paths = 10};
-    const fibrad_displacement_rule carried = {.emissivity = emissivity, .paths = 10};
     const uint32_t first = 3;
     for (int t = 0; t < 3; t++) {
         run.threads = threads[t];
         const fibrad_bed_rule raw = {.raw = 1};
-        assert_invalid(fibrad_exchange_factors(NULL, &spheres, &rule, &raw, &run, &factors));
+        assert_invalid(exchange_of(NULL, &spheres, &rule, &raw, &run, &factors));
         ck_assert(run.fault.first == first && run.fault.second == first && factors == NULL);
-        /* paths must not meet spheres without emissivity: displacements of such beds are refused, too */
-        static fibrad_displacement moved[100];
-        unsigned char wanted[100] = {[50] = 1};
-        run.fault = (fibrad_fault){0, 0, 0, 0, 0};
-        assert_invalid(fibrad_displacements(NULL, &spheres, &carried, wanted, &run, moved, NULL));
-        ck_assert(run.fault.first == first && run.fault.second == first);
     }
     bed.x[5] = bed.x[60], bed.y[5] = bed.y[60], bed.z[5] = bed.z[60];
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, NULL, &run, &factors), FIBRAD_E_GEOMETRY);
@@ -347,7 +326,7 @@ TEST(arguments) {
     OWNED_BED bed = packing(10, .8, 1.2, .4, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     OWNED_FACTORS *factors;
-    fibrad_radiation *radiation;
+    fibrad_bed *made;
     const fibrad_bed_rule two = {.beam = &(fibrad_beam_rule){0}, .cast = &(fibrad_cast_rule){0}}, drop = {.drop = -1},
                           nan = {.drop = NAN}, points = {.beam = &(fibrad_beam_rule){.points = 3}},
                           between = {.beam = &(fibrad_beam_rule){.points = 192}};
@@ -362,15 +341,14 @@ TEST(arguments) {
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &points, NULL, &factors), FIBRAD_E_TABLE);
     ck_assert_int_eq(fibrad_view_factors(NULL, &spheres, &between, NULL, &factors), FIBRAD_E_TABLE);
     ck_assert_ptr_null(factors);
-    assert_invalid(fibrad_exchange_factors(NULL, &spheres, NULL, NULL, NULL, &factors));
-    assert_invalid(fibrad_displacements(NULL, &spheres, NULL, NULL, NULL, NULL, NULL));
-    assert_invalid(fibrad_radiation_new(NULL, NULL, &spheres, NULL, NULL));
-    assert_invalid(fibrad_radiation_new(&radiation, NULL, NULL, NULL, NULL));
-    ck_assert_ptr_null(radiation);
-    assert_invalid(fibrad_radiation_move(NULL, NULL, &spheres));
-    assert_invalid(fibrad_radiation_solve(NULL, NULL, NULL));
-    fibrad_radiation_describe(NULL, NULL, NULL);
-    fibrad_radiation_free(NULL);
+    assert_invalid(fibrad_bed_new(NULL, NULL, &spheres, NULL));
+    assert_invalid(fibrad_bed_new(&made, NULL, NULL, NULL));
+    ck_assert_ptr_null(made);
+    assert_invalid(fibrad_bed_move(NULL, NULL, &spheres));
+    assert_invalid(fibrad_bed_beams(NULL, NULL));
+    assert_invalid(fibrad_bed_solve(NULL, NULL, NULL, NULL));
+    fibrad_bed_describe(NULL, NULL, NULL);
+    fibrad_bed_free(NULL);
     fibrad_bed_matrix_free(NULL);
     assert_ok(fibrad_view_factors(NULL, &(fibrad_spheres){0}, NULL, NULL, &factors));
     ck_assert(factors->matrix.n == 0 && factors->matrix.start[0] == 0);
@@ -435,9 +413,9 @@ static fibrad_heat_sources sources_of(const double *temperature, const double *e
     return sources;
 }
 
-static void powers(fibrad_radiation *radiation, const fibrad_heat_sources *sources, double power[N]) {
+static void powers(fibrad_bed *radiation, const fibrad_heat_sources *sources, double power[N]) {
     fibrad_heat_result result = {.power = power};
-    assert_ok(fibrad_radiation_solve(radiation, sources, &result));
+    assert_ok(fibrad_bed_solve(radiation, sources, NULL, &result));
 }
 
 TEST(radiation_moves) {
@@ -451,40 +429,40 @@ TEST(radiation_moves) {
     for (int t = 0; t < 3; t++) {
         struct calls calls = {0};
         fibrad_run run = {.threads = threads[t], .progress = count_calls, .context = &calls};
-        OWNED_RADIATION *radiation = NULL;
+        OWNED_MADE *radiation = NULL;
         fibrad_scene_facts facts;
         fibrad_fault fault;
-        assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run));
+        assert_ok(made_with(&radiation, NULL, &spheres, &config, &run));
         powers(radiation, &sources, power);
         if (t == 0) memcpy(first, power, sizeof power);
         ck_assert_int_eq(memcmp(first, power, sizeof power), 0);
 
         /* a refused call leaves the bed as it was */
-        assert_invalid(fibrad_radiation_move(radiation, NULL, &fewer));
-        assert_invalid(fibrad_radiation_move(radiation, &(fibrad_scene_config){.wall = &wall, .walls = 1}, &spheres));
+        assert_invalid(fibrad_bed_move(radiation, NULL, &fewer));
+        assert_invalid(fibrad_bed_move(radiation, &(fibrad_scene_config){.wall = &wall, .walls = 1}, &spheres));
         kept = bed.x[7], bed.x[7] = NAN;
-        assert_invalid(fibrad_radiation_move(radiation, NULL, &spheres));
+        assert_invalid(fibrad_bed_move(radiation, NULL, &spheres));
         bed.x[7] = kept;
-        fibrad_radiation_describe(radiation, &facts, &fault);
+        fibrad_bed_describe(radiation, &facts, &fault);
         ck_assert(facts.spheres == N && fault.first == 7 && fault.second == 7);
         powers(radiation, &sources, again);
         for (int i = 0; i < N; i++) ck_assert_double_eq_tol(again[i], power[i], 10);
 
         /* the bed moves to another place, and back */
         for (int i = 0; i < N; i++) bed.z[i] *= 1.1;
-        assert_ok(fibrad_radiation_move(radiation, NULL, &spheres));
+        assert_ok(fibrad_bed_move(radiation, NULL, &spheres));
         powers(radiation, &sources, again);
         ck_assert(memcmp(again, power, sizeof power) != 0);
 
-        /* a move is cancelled while it traces */
+        /* a solution is cancelled while it traces, and then while it sweeps */
+        assert_ok(fibrad_bed_move(radiation, NULL, &spheres));
         calls = (struct calls){.stop_at = 1};
-        ck_assert_int_eq(fibrad_radiation_move(radiation, NULL, &spheres), FIBRAD_E_CANCELLED);
-        ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
-                         FIBRAD_E_STATE);
+        ck_assert_int_eq(fibrad_bed_solve(radiation, &sources, NULL, &(fibrad_heat_result){.power = power}),
+                         FIBRAD_E_CANCELLED);
         calls.stop_at = 0;
-        assert_ok(fibrad_radiation_move(radiation, NULL, &spheres));
+        assert_ok(fibrad_bed_beams(radiation, &config));
         calls = (struct calls){.stop_at = 2};
-        ck_assert_int_eq(fibrad_radiation_solve(radiation, &sources, &(fibrad_heat_result){.power = power}),
+        ck_assert_int_eq(fibrad_bed_solve(radiation, &sources, NULL, &(fibrad_heat_result){.power = power}),
                          FIBRAD_E_CANCELLED);
         calls.stop_at = 0;
         powers(radiation, &sources, power);
@@ -518,16 +496,17 @@ TEST(radiation_gets_more_room) {
     const fibrad_heat_sources sources = sources_of(temperature, emissivity);
     struct returns returns = {0};
     fibrad_run run = {.threads = 1, .progress = count_returns, .context = &returns};
-    OWNED_RADIATION *radiation;
-    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run));
+    OWNED_MADE *radiation;
+    assert_ok(made_with(&radiation, NULL, &spheres, &config, &run));
     ck_assert_uint_eq(returns.count, 0);
     returns.done = 0;
     for (int i = 0; i < MANY; i++) bed.x[i] *= 2, bed.y[i] *= 2, bed.z[i] *= 2;
-    assert_ok(fibrad_radiation_move(radiation, NULL, &spheres));
+    assert_ok(fibrad_bed_move(radiation, NULL, &spheres));
+    assert_ok(fibrad_bed_beams(radiation, &config));
     ck_assert_uint_ge(returns.count, 1);
     powers(radiation, &sources, moved);
-    fibrad_radiation_free(radiation);
-    assert_ok(fibrad_radiation_new(&radiation, NULL, &spheres, &config, &run));
+    fibrad_bed_free(radiation);
+    assert_ok(made_with(&radiation, NULL, &spheres, &config, &run));
     powers(radiation, &sources, begun);
     ck_assert_mem_eq(moved, begun, sizeof moved);
 }
@@ -540,7 +519,7 @@ TEST(radiation_with_walls) {
     fibrad_heat_sources sources = sources_of(temperature, emissivity);
     sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
     fibrad_wall walls[6];
-    OWNED_RADIATION *radiation = NULL;
+    OWNED_MADE *radiation = NULL;
     for (int far = 0; far < 2; far++) {
         const double edge = far ? 200 : 40;
         for (int w = 0; w < 6; w++) {
@@ -549,10 +528,10 @@ TEST(radiation_with_walls) {
         }
         const fibrad_scene_config config = {.wall = walls, .walls = 6};
         const fibrad_heat_config heat = {.directions = 8, .patches = 24};
-        assert_ok(far ? fibrad_radiation_move(radiation, &config, &spheres)
-                      : fibrad_radiation_new(&radiation, &config, &spheres, &heat, NULL));
-        assert_ok(fibrad_radiation_solve(radiation, &sources,
-                                         &(fibrad_heat_result){.power = power, .wall_power = wall_power}));
+        assert_ok(far ? fibrad_bed_move(radiation, &config, &spheres)
+                      : made_with(&radiation, &config, &spheres, &heat, NULL));
+        assert_ok(fibrad_bed_solve(radiation, &sources, NULL,
+                                   &(fibrad_heat_result){.power = power, .wall_power = wall_power}));
         for (int i = 0; i < N; i++) ck_assert_double_lt(fabs(power[i]), 1e-6); /* all have one temperature */
     }
 }
@@ -580,9 +559,9 @@ TEST(laws_are_checked) {
     double emissivity, wall_emissivity, power, found, wall_power, wall_found;
     fibrad_heat_result result = {
         .power = &power, .wall_power = &wall_power, .temperature = &found, .wall_temperature = &wall_found};
-    OWNED_RADIATION *radiation = NULL;
-    assert_ok(fibrad_radiation_new(&radiation, &(fibrad_scene_config){.wall = &floor, .walls = 1}, &one,
-                                   &(fibrad_heat_config){.directions = 8, .patches = 24}, NULL));
+    OWNED_MADE *radiation = NULL;
+    assert_ok(made_with(&radiation, &(fibrad_scene_config){.wall = &floor, .walls = 1}, &one,
+                        &(fibrad_heat_config){.directions = 8, .patches = 24}, NULL));
     fibrad_heat_sources sources;
     fibrad_heat_sources_init(&sources);
     sources.surroundings = 300;
@@ -590,14 +569,12 @@ TEST(laws_are_checked) {
         struct law law = {.fails = -1};
         sources.temperature = given % 2 ? &temperature : NULL;
         sources.wall_temperature = given / 2 ? &temperature : NULL;
-        ck_assert_int_eq(
-            fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &wall_emissivity, &result),
-            given == 3 ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
+        ck_assert_int_eq(made_settle(radiation, &sources, follow_law, &law, &emissivity, &wall_emissivity, &result),
+                         given == 3 ? FIBRAD_OK : FIBRAD_E_ARGUMENT);
         ck_assert(!law.null && law.asked == (given == 3 ? 2 : 0));
     }
     for (int k = 0; k < 8; k++) {
         struct law law = {.fails = k / 4, .wrong = wrong[k % 4]};
-        assert_invalid(
-            fibrad_radiation_settle(radiation, &sources, follow_law, &law, &emissivity, &wall_emissivity, &result));
+        assert_invalid(made_settle(radiation, &sources, follow_law, &law, &emissivity, &wall_emissivity, &result));
     }
 }

@@ -57,7 +57,7 @@ static double factor(const scene *s, uint32_t nodes, uint32_t flags, int isa, fi
 
 /* ---- tests ---- */
 
-/* docs/reproduction.md: largest relative error over the gaps, in per cent. */
+/* docs/validation.md: largest relative error over the gaps, in per cent. */
 TEST(errors_are_those_published) {
     static const double radius[] = {.1, .3, .7, 1};
     static const struct {

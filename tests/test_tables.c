@@ -83,14 +83,6 @@ TEST(disc_points_are_sunflowers) {
     }
 }
 
-TEST(other_disc_sets_are_not_built_in) {
-    static const uint32_t others[] = {0, 1, 32, 63, 65, 127, 192, 255, 257, 512, UINT32_MAX};
-    fibrad_disc_points points = {NULL, NULL};
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-        ck_assert_int_eq(fibrad_disc_points_get(others[i], &points), FIBRAD_E_TABLE);
-    ck_assert_ptr_null(points.x);
-}
-
 TEST(surface_nodes_follow_the_mapped_lattice) {
     uint32_t rules = 0;
     for (uint32_t before = 5, n = 8; n <= 987; rules++) {
@@ -140,11 +132,4 @@ TEST(surface_weights_integrate_over_the_sphere) {
     ck_assert_double_eq_tol(zz, 1 / 3.0, 1e-5);
     ck_assert_double_eq_tol(xx, 1 / 3.0, 1e-5);
     ck_assert_double_eq_tol(xz, 0, 1e-5);
-}
-
-TEST(other_surface_rules_are_not_built_in) {
-    static const uint32_t others[] = {0, 1, 5, 7, 9, 12, 14, 100, 986, 988, 1597, UINT32_MAX};
-    fibrad_surface_nodes nodes;
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
-        ck_assert_int_eq(fibrad_surface_nodes_get(others[i], &nodes), FIBRAD_E_TABLE);
 }

@@ -15,7 +15,7 @@ static fibrad_bed_matrix *factors_of(const struct bed *bed, const fibrad_scene_c
     fibrad_bed_matrix *factors;
     memcpy(whole.period, bed->period, sizeof whole.period);
     with_walls.walls = 1;
-    const int status = grey ? fibrad_exchange_factors(&whole, &spheres, grey, &with_walls, NULL, &factors)
+    const int status = grey ? exchange_of(&whole, &spheres, grey, &with_walls, NULL, &factors)
                             : fibrad_view_factors(&whole, &spheres, &with_walls, NULL, &factors);
     assert_ok(status);
     ck_assert_ptr_nonnull(factors->matrix.wall_wall);
@@ -426,7 +426,7 @@ TEST(same_bits_of_walls) {
         const fibrad_scene_config config = {.isa = isas.set[k], .wall = room.wall, .walls = room.walls};
         fibrad_run run = {.threads = 1 + k};
         fibrad_bed_matrix *f;
-        assert_ok(fibrad_exchange_factors(&config, &spheres, &rule, &(fibrad_bed_rule){.walls = 1}, &run, &f));
+        assert_ok(exchange_of(&config, &spheres, &rule, &(fibrad_bed_rule){.walls = 1}, &run, &f));
         if (first) {
             ck_assert(matrix_same_bits(&f->matrix, &first->matrix));
             ck_assert_mem_eq(f->matrix.wall_wall, first->matrix.wall_wall, 9 * sizeof(double));

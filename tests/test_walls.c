@@ -144,31 +144,23 @@ TEST(bad_walls_are_refused) {
     OWNED fibrad_scene *scene = NULL;
     fibrad_fault fault;
     free(scene_in(&bed, &box10, 0)); /* a sphere may reach through a wall */
-    const fibrad_wall z_low = plane_at(2, 0, 0), z_high = plane_at(2, 1, 20), x_low = plane_at(0, 0, 0),
-                      y_high = plane_at(1, 1, 20), can = cylinder_at(5, 5, 9);
+    const fibrad_wall z_low = plane_at(2, 0, 0), x_low = plane_at(0, 0, 0), y_high = plane_at(1, 1, 20),
+                      can = cylinder_at(5, 5, 9);
     const struct {
         uint32_t count;
-        fibrad_wall wall[3];
+        fibrad_wall wall[2];
     } bad[] = {{1, {{.kind = 0}}},
                {1, {{.kind = 4}}},
-               {1, {{.kind = -1}}},
                {1, {plane_at(3, 0, 0)}},
                {1, {plane_at(-1, 0, 0)}},
                {1, {plane_at(0, 2, 0)}},
-               {1, {plane_at(0, -1, 0)}},
                {2, {plane_at(0, 0, 6), plane_at(0, 1, 6)}},
-               {2, {plane_at(0, 1, 6), plane_at(0, 0, 7)}},
                {2, {z_low, z_low}}, /* two planes have the same side */
-               {2, {plane_at(2, 0, -1), z_low}},
-               {3, {z_low, z_high, plane_at(2, 1, 30)}},
                {1, {plane_at(0, 0, NAN)}},
-               {1, {plane_at(0, 0, -INFINITY)}},
                {1, {plane_at(0, 0, -1e200)}},
-               {1, {cylinder_at(5, 5, -1)}},
                {1, {cylinder_at(5, 5, 0)}},
                {1, {cylinder_at(5, 5, NAN)}},
                {1, {cylinder_at(INFINITY, 0, 1)}},
-               {1, {cylinder_at(0, NAN, 1)}},
                {2, {can, can}},
                {2, {x_low, can}},
                {2, {can, y_high}}};
@@ -220,24 +212,6 @@ TEST(what_is_not_supported) {
     walls[5] = mesh;
     assert_invalid(init(&scene, &bed, 6, walls, &fault));
     ck_assert_ptr_null(scene);
-}
-
-/* A row of a scene with walls needs room for them. Nothing is written after it. */
-TEST(rows_need_room_for_walls) {
-    OWNED_BED bed = BED({5, 5, 5, 1}, {2, 5, 5, 1});
-    OWNED fibrad_scene *scene = scene_in(&bed, &can10, 0);
-    OWNED_WORK work = work_growing();
-    double wall[4] = {-3, -3, -3, -3};
-    fibrad_row row = row_of(2), without = row;
-    without.wall = NULL;
-    without.length = 77;
-    assert_invalid(fibrad_beam_row(scene, &work, 0, NULL, &without));
-    assert_invalid(fibrad_cast_row(scene, &work, 0, NULL, &without, NULL));
-    ck_assert_uint_eq(without.length, 77);
-    without.wall = wall;
-    assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &without));
-    ck_assert(wall[0] > 0 && wall[1] > 0 && wall[2] > 0 && wall[3] == -3);
-    row_free(&row);
 }
 
 /* The mean factors of all spheres to the walls, by 14 windows of 64 points that are turned at random, many times.

@@ -24,7 +24,7 @@ FIXTURE(make_folder, remove_folder)
 
 #define HEAT_AT(ambient) "heat", "--emissivity", ".6", "--directions", "21", "--patches", "24", "--ambient", ambient
 #define HEAT             HEAT_AT("300")
-#define TIME             "--until", "1", "--model", "patches"
+#define TIME             "--until", "1"
 
 static const struct {
     const char *words[20], *bed, *more, *reason; /* more: a further frame; reason: NULL if there is no warning */

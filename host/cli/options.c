@@ -93,6 +93,8 @@ static const struct {
                {"wall-emissivity", "--wall-emissivity zmin=0.8 is now --wall zmin:emissivity=0.8"},
                {"wall-absorptivity", "--wall-absorptivity zmin=0.8 is now --wall zmin:absorptivity=0.8"},
                {"every", "--every 60 is now --times every:60"},
+               {"model", "--model is not needed any more: powers at one time are by patches, in time by factors that "
+                         "patches correct"},
                {"nf", "--method surface and --nf are of fibrad pair and fibrad reproduce"}};
 
 static int unknown_option(const struct walk *walk, const char *text, size_t length) {
@@ -256,20 +258,6 @@ int option_method(const char *text, void *method) {
     return message(STATUS_USAGE, "--method: '%.40s' is not a method", text);
 }
 
-int option_nodes(const char *text, void *nodes) {
-    uint32_t *wanted = nodes;
-    const int status = options_count("--nf", text, 1, UINT32_MAX, wanted);
-    char sizes[64] = "";
-    int length = 0;
-    for (uint32_t size = FIBRAD_NODES_MIN, next = 13, sum; size <= FIBRAD_NODES_MAX && !status;
-         size = next, next = sum) {
-        if (*wanted == size) return STATUS_OK;
-        length += snprintf(sizes + length, sizeof sizes - (size_t)length, "%s%" PRIu32, length ? ", " : "", size);
-        sum = size + next;
-    }
-    return status ? status : message(STATUS_USAGE, "--nf: %.40s is not built in; %s are", text, sizes);
-}
-
 int methods_check(struct method_options *m) {
     const bool exact = m->areas && strcmp(m->areas, "exact") == 0, points = m->areas && strcmp(m->areas, "points") == 0;
     const bool cast = m->method == METHOD_CAST || m->method == METHOD_MC;
@@ -277,15 +265,11 @@ int methods_check(struct method_options *m) {
         return message(STATUS_USAGE, "--areas: '%.40s' is neither exact nor points", m->areas);
     if ((m->beam.directions || m->beam.points || m->areas) && m->method != METHOD_BEAM)
         return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
-    if ((m->surface.nodes || m->plain) && m->method != METHOD_SURFACE)
-        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
     if ((m->cast.rays || m->seed) && !cast)
         return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
     if (exact && m->beam.points) return message(STATUS_USAGE, "--points contradicts --areas exact");
     if (exact) m->beam.chords = FIBRAD_CHORDS_NONE;
     if (points && !m->beam.points) m->beam.points = 256;
-    if (m->plain) m->surface.flags |= FIBRAD_SURFACE_NO_CORRECTION;
-    if (!m->surface.nodes) m->surface.nodes = FIBRAD_NODES_DEFAULT;
     if (!m->cast.rays) m->cast.rays = FIBRAD_RAYS_DEFAULT;
     m->cast.random = m->method == METHOD_MC;
     return m->seed ? options_whole("--seed", m->seed, 0, UINT64_MAX, &m->cast.seed) : STATUS_OK;

@@ -7,7 +7,6 @@
 #include <stdint.h>
 
 #include "fibrad.h"
-#include "fibrad_surface.h"
 
 /* What becomes of the argument of an option. */
 enum option_kind {
@@ -104,17 +103,14 @@ enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC 
 struct method_options {
     enum method method;
     fibrad_beam_rule beam;
-    fibrad_surface_rule surface;
     fibrad_cast_rule cast;
     const char *areas, *seed;
-    bool plain; /* --no-correction */
 };
 
 int option_method(const char *text, void *method);
-int option_nodes(const char *text, void *nodes);
 
 /* Rows of the options, with braces, for a request with a field `methods`. The rows of --method and --directions are the
- * command's, and --nf and --no-correction are of commands that have the surface method. */
+ * command's. */
 #define OPTIONS_METHODS(request)                                                                                       \
     {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",          \
      TO_TEXT(request, methods.areas)},                                                                                 \

@@ -23,7 +23,6 @@ struct conductivity_request {
     struct conduction_rule rule;
     bool steady;
     struct contact_options contacts;
-    double isothermal; /* [W/(m K)] of conduction_isothermal; NaN: not known */
 };
 
 static int take_axis(const char *text, void *axis) {
@@ -43,77 +42,78 @@ static int take_rays(const char *text, void *rays) {
 
 static const struct option conductivity_table[] = {
     {OPTION_EMISSIVITY(struct conductivity_request, emissivity)},
-    {OPTION_SOLID_CONDUCTIVITY(struct conductivity_request, solid)},
     {0, "temperature", "T",
-     "mean temperature, for k, or several: a list T,T,... or FROM:TO:STEP. Outputs have all of them [none: F_E only]",
+     "mean temperature, for k; or several: a list T,T,... or FROM:TO:STEP; outputs have all of them [none: F_E only]",
      TO_TEXT(struct conductivity_request, at)},
     {OPTION_TEMPERATURE_UNIT(struct conductivity_request, zero)},
     {0, "axis", "x|y|z", "axis of F_E and of --error [all three]",
      TO_FUNCTION(take_axis, struct conductivity_request, rule.axis)},
-    {0, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]",
-     TO_WHOLE(struct conductivity_request, rule.paths, 1, FIBRAD_PATHS_MAX)},
-    {0, "error", "E", "standard error allowed, relative to F_E, 1e-4 to 1; paths are added until it is met [0.003]",
+    {0, "error", "E", "standard error allowed, relative to F_E; 1e-4 to 1; paths are added until it is met [0.003]",
      TO_NUMBER(struct conductivity_request, rule.error, 1e-4, 1)},
-    {0, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]",
-     TO_FUNCTION(take_rays, struct conductivity_request, rule.max_rays)},
+    {OPTION_SOLID_CONDUCTIVITY(struct conductivity_request, solid)},
     {0, "steady", NULL,
-     "compute also F_E of the bed between two black plates, for spheres whose net power is 0. This is done along each "
-     "axis whose other two axes are periodic or end at walls",
+     "compute also F_E of the bed between two black plates; for spheres whose net power is 0, along each axis whose "
+     "other two axes are periodic or end at walls",
      TO_FLAG(struct conductivity_request, steady)},
     {0, "wall", "LIST",
-     "sides of the bed, which reflect everything: cylinder:X,Y,R, box, xmin, xmax ... as in fibrad heat; none of them "
-     "lies across the axis of F_E [none]",
+     "sides of the bed, which reflect all: cylinder:X,Y,R, box, xmin ...; as in fibrad heat, none of them across the "
+     "axis of F_E [none]",
      TO_FUNCTION(walls_option, struct bed_options, walls)},
     OPTIONS_CONTACTS(struct conductivity_request),
-    OPTIONS_CONTACTS_RARE(struct conductivity_request),
-    {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
     OPTIONS_INPUT,
-    OPTIONS_INPUT_RARE,
     {OPTION_BED_OUTPUT("write F_E and k of each axis: .csv .json, - for standard output [summary only]")},
-    {OPTION_BED_FORMAT},
     OPTIONS_RUN,
+    OPTIONS_RARE,
+    {0, "rays", "N", "paths from each sphere; the error falls as N^-0.5 [as many as --error needs]",
+     TO_WHOLE(struct conductivity_request, rule.paths, 1, FIBRAD_PATHS_MAX)},
+    {0, "max-rays", "N", "approximate limit of the rays that --error may take in all [5e7]",
+     TO_FUNCTION(take_rays, struct conductivity_request, rule.max_rays)},
+    {0, "seed", "S", "seed of paths and directions [0]", TO_WHOLE(struct conductivity_request, rule.seed, 0, INFINITY)},
+    OPTIONS_CONTACTS_RARE(struct conductivity_request),
+    OPTIONS_INPUT_RARE,
+    {OPTION_BED_FORMAT},
     {.name = NULL}};
 
 static int conductivity_help(void) {
-    puts("fibrad conductivity FILE... --emissivity E [options]\n\n"
-         "Exchange factor F_E = k/(4 sigma T^3 d) of a bed of grey diffuse spheres along each axis. k is the\n"
-         "radiative conductivity of the bed [W/(m K)]. d is the mean diameter of the spheres [m]. Each sphere has\n"
-         "one temperature, unless --solid-conductivity says how well it conducts.\n");
-    options_print(conductivity_table);
-    printf("\n" FILES_MORE "\n"
-           "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
-           "only spheres deep inside the bed emit, %g mean diameters or more from the outermost centres (%g with\n"
-           "--solid-conductivity). With --axis, the bed\n"
-           "may be too thin for this along another axis. Spheres at any place along that other axis then emit. Where\n"
-           "a periodic bed has gaps, flights may be so long that F_E does not exist, or that its standard error\n"
-           "cannot be estimated. Then there is a warning.\n"
-           "\n"
-           "A bed in a container loses radiation through its sides, unless --wall has them: F_E is then that of a\n"
-           "tube or a box that goes on along the axis, over the area within the walls. Walls reflect diffusely.\n"
-           "\n",
-           CONDUCTION_MARGIN, CONDUCTION_MARGIN_WALK);
-    puts("Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
-         "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
-         "axes whose F_E or error is not reliable. There, .csv has `reliable` 0 and the reason in `warning`.\n"
-         "With --temperature there are also k_x_W_mK to k_z_W_mK and\n"
-         "k_x_W_mK_error to k_z_W_mK_error. With --solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is\n"
-         "that of spheres whose temperatures differ from point to point. Without --solid-conductivity, if the unit\n"
-         "of length is known, the line `isothermal` has a k_s. Above this k_s, F_E with one temperature for each\n"
-         "sphere is right to 5 %.\n"
-         "\n" CONTACTS_MORE
-         "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
-         "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
-         "have its temperature.\n"
-         "\n"
-         "Examples:\n"
-         "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
-         "      --contact-conductivity 30 --contact-scale 0.05\n"
-         "  fibrad conductivity packing.dump --emissivity 0.8\n"
-         "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
-         "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 300:2000:100 --solid-conductivity 30 \\\n"
-         "      -o k.csv\n"
-         "  fibrad conductivity tube.dump --emissivity 0.8 --wall cylinder:0,0,0.03 --steady\n"
-         "  fibrad conductivity cell.csv --periodic 2,2,2 --emissivity 0.4 --error 0.001");
+    options_help(
+        "conductivity",
+        "fibrad conductivity FILE... --emissivity E [options]\n\n"
+        "Exchange factor F_E = k/(4 sigma T^3 d) of a bed of grey diffuse spheres along each axis. k is the\n"
+        "radiative conductivity of the bed [W/(m K)]. d is the mean diameter of the spheres [m]. Each sphere has\n"
+        "one temperature, unless --solid-conductivity says how well it conducts.\n",
+        conductivity_table,
+        (const char *const[]){
+            FILES_MORE, WALLS_MORE,
+            "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
+            "only spheres deep inside the bed emit, " TEXT_OF(
+                CONDUCTION_MARGIN) " mean diameters or more from the "
+                                   "outermost centres\n(" TEXT_OF(
+                                       CONDUCTION_MARGIN_WALK) " with --solid-conductivity). With --axis, the bed may "
+                                                               "be too thin for this along another\naxis. Spheres at "
+                                                               "any place along that other axis then emit. Where "
+                                                               "a periodic bed has gaps, flights may\nbe so long that "
+                                                               "F_E does not exist, or that its standard error "
+                                                               "cannot be estimated. Then there is a\nwarning.\n",
+            "A bed in a container loses radiation through its sides, unless --wall has them: F_E is then that of a\n"
+            "tube or a box that goes on along the axis, over the area within the walls. Walls reflect diffusely.\n",
+            "Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"
+            "F_E_x_error, F_E_y_error and F_E_z_error are their estimated standard errors. `unreliable` names the\n"
+            "axes whose F_E or error is not reliable. There, .csv has `reliable` 0 and the reason in `warning`.\n"
+            "With --temperature there are also k_x_W_mK to k_z_W_mK and k_x_W_mK_error to k_z_W_mK_error. With\n"
+            "--solid-conductivity k_star is k_s/(4 d sigma T^3), and F_E is that of spheres whose temperatures differ\n"
+            "from point to point. Without --solid-conductivity, if the unit of length is known, the line\n"
+            "`isothermal` has a k_s. Above this k_s, F_E with one temperature for each sphere is right to 5 %.\n",
+            CONTACTS_MORE
+            "With --contacts or --gas-conductivity, --steady finds k_total of the bed with radiation and contacts,\n"
+            "k_radiation without contacts and k_conduction without radiation. Spheres within a diameter of a plate\n"
+            "have its temperature.\n",
+            NULL},
+        "Examples:\n"
+        "  fibrad conductivity packing.dump --emissivity 0.8 --axis z --temperature 1200 -o k.csv\n"
+        "  fibrad conductivity pebbles.dump --emissivity 0.8 --steady --temperature 1000 --contacts hertz \\\n"
+        "      --contact-conductivity 30 --contact-scale 0.05\n"
+        "  fibrad conductivity pebbles.dump --emissivity 0.8 --temperature 300:2000:100 --solid-conductivity 30\n"
+        "  fibrad conductivity tube.dump --emissivity 0.8 --wall cylinder:0,0,0.03 --steady\n");
     return STATUS_OK;
 }
 
@@ -244,9 +244,10 @@ static void conductivity_report(struct conductivity_request *request, const stru
                       conduction_worst(&request->rule, result), "F_E; more --max-rays would help");
     axes_with(result, FLIGHTS_ENDLESS | FLIGHTS_RARE | FLIGHTS_LEAVING, unreliable);
     report_text(report, "unreliable", *unreliable ? unreliable : "none");
-    if (!isnan(request->isothermal)) {
+    if (!isnan(result->isothermal)) {
         char text[80];
-        snprintf(text, sizeof text, "right to 5 %% for k_s above %.3g W/(m K)", request->isothermal);
+        snprintf(text, sizeof text, "right to 5 %% for k_s above %.3g W/(m K)",
+                 result->isothermal * pow(result->temperature, 3));
         report_text(report, "isothermal", text);
     }
     if (!isnan(result->temperature)) {
@@ -281,16 +282,6 @@ static void conductivity_warn(const struct conductivity_request *request, const 
                    axes);
 }
 
-/* If the unit of length is known, finds the k_s above which F_E with one temperature a sphere is right. */
-static int conductivity_isothermal(struct conductivity_request *request, const struct bed *bed,
-                                   const unsigned char *emits, const struct conduction *result) {
-    fibrad_run run = bed_options_run(&request->bed);
-    request->isothermal = NAN;
-    if (request->solid.given || !(result->temperature > 0) || !bed_options_unit(&request->bed, bed)) return STATUS_OK;
-    const int status = conduction_isothermal(bed, emits, &request->rule, &run, result, &request->isothermal);
-    return bed_options_status(&request->bed, bed, status, &run.fault);
-}
-
 /* Follows the paths of a bed. Refuses a bed that emits nothing. */
 static int conductivity_follow(struct conductivity_request *request, const struct bed *bed, const unsigned char *emits,
                                struct conduction *result) {
@@ -302,62 +293,48 @@ static int conductivity_follow(struct conductivity_request *request, const struc
     return bed_options_status(&request->bed, bed, status, &run.fault);
 }
 
-/* Leaves out contacts with walls other than the plates, which are the first two. Returns how many are left. */
-static uint32_t contacts_of_plates(struct contact_state *contacts, uint32_t spheres) {
-    uint32_t kept = 0;
-    for (uint32_t k = 0; k < contacts->n; ++k) {
-        if (contacts->first[k] >= spheres + 2 || contacts->second[k] >= spheres + 2) continue;
-        contacts->first[kept] = contacts->first[k], contacts->second[kept] = contacts->second[k];
-        contacts->conductance[kept++] = contacts->conductance[k];
-    }
-    return kept;
-}
-
 /* Conductivities between plates along an axis, in W/(m K). Without a temperature there is F_E alone. */
 static int conductivity_plates(struct conductivity_request *request, const struct bed *bed, double kelvins, int axis,
-                               struct conduction_plates *plates) {
-    struct bed open = *bed;
-    open.period[axis] = 0;
-    const struct walls walls = plates_walls(&open, &request->walls, axis);
+                               struct conduction_plates *found) {
     const double any = kelvins > 0 ? kelvins : 1000, metres = bed->metres > 0 ? bed->metres : 1;
-    double *at = malloc(((size_t)bed->n + 1) * sizeof *at);
+    double *at = malloc(((size_t)bed->n + 1) * sizeof *at), of_walls[WALLS_MAX];
     struct contact_state contacts = {0};
     struct table_excess excess[2] = {{0}};
-    fibrad_bed *made = NULL;
-    fibrad_fault fault;
-    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = (const double[]){any, any}};
+    struct plates plates;
+    fibrad_run run = bed_options_run(&request->bed);
+    fibrad_heat_sources sources = {.temperature = at, .wall_temperature = of_walls};
     if (!at) return message_memory();
     for (uint32_t i = 0; i < bed->n; ++i) at[i] = any;
-    int status = bed_options_make(&request->bed, &open, &walls, &made);
+    for (int k = 0; k < WALLS_MAX; ++k) of_walls[k] = any;
+    int status = plates_open(&plates, bed, &request->walls, axis, &run);
+    status = bed_options_status(&request->bed, bed, status, &run.fault);
     if (!status)
-        status = contacts_begin(&contacts, &request->contacts, &request->bed, &open, made, &walls, &request->solid,
-                                1 / (metres * metres), &sources);
+        status = contacts_begin(&contacts, &request->contacts, &request->bed, &plates.bed, plates.made, &plates.walls,
+                                &request->solid, 1 / (metres * metres), &sources);
     if (!status) {
-        contacts_excess(&contacts, &open, at, NULL, excess);
+        contacts_excess(&contacts, bed, at, NULL, excess);
         contacts_warn(&request->bed.warned, excess);
-        const struct plates_problem problem = {bed,
-                                               &request->walls,
-                                               request->rule.emissivity,
+        const struct plates_problem problem = {request->rule.emissivity,
                                                request->rule.conductivity,
                                                any,
                                                contacts_given(&request->contacts),
-                                               contacts_of_plates(&contacts, bed->n),
+                                               contacts.n,
                                                contacts.first,
                                                contacts.second,
                                                contacts.conductance};
-        status = plates_conduct(&problem, made, axis, plates);
-        fibrad_bed_describe(made, NULL, &fault);
-        const int refused = contacts_refuse(&contacts, &request->bed, &open, &walls, status, &fault);
-        status = refused ? refused : bed_options_status(&request->bed, bed, status, &fault);
+        status = plates_conduct(&plates, &problem, found);
+        fibrad_bed_describe(plates.made, NULL, &run.fault);
+        const int refused = contacts_refuse(&contacts, &request->bed, bed, &plates.walls, status, &run.fault);
+        status = refused ? refused : bed_options_status(&request->bed, bed, status, &run.fault);
     }
-    struct conduction_value *const in_metres[] = {&plates->radiation, &plates->conduction, &plates->both};
+    struct conduction_value *const in_metres[] = {&found->radiation, &found->conduction, &found->both};
     for (int k = 0; k < 3 && !status; ++k) in_metres[k]->k *= metres, in_metres[k]->error *= metres;
     contacts_free(&contacts);
-    fibrad_bed_free(made);
+    plates_close(&plates);
     free(at);
-    if (!status && plates->spheres < PLATES_FITTED)
+    if (!status && found->spheres < PLATES_FITTED)
         return message_at(STATUS_INPUT, request->bed.name, 0,
-                          "%u spheres in the inner half along %c are too few for a line", plates->spheres, 'x' + axis);
+                          "%u spheres in the inner half along %c are too few for a line", found->spheres, 'x' + axis);
     return status;
 }
 
@@ -430,21 +407,14 @@ static int conductivity_at(struct conductivity_request *request, struct bed *bed
     int status = quantity_values(&request->emissivity, bed, file, "emissivity", 0, 0, 1, &emissivity);
     if (!status) status = conductivity_solid(request, bed, kelvins, &relative);
     request->rule.emissivity = emissivity, request->rule.conductivity = relative, request->rule.walls = &request->walls;
+    request->rule.isothermal = !request->solid.given && kelvins > 0 && bed_options_unit(&request->bed, bed);
     if (!status) status = conduction_emitters(bed, &request->walls, request->rule.axis, margin, file, emits, result);
     if (!status) status = conductivity_follow(request, bed, emits, result);
     if (!status && request->at) conduction_at(result, bed, kelvins);
-    if (!status) status = conductivity_isothermal(request, bed, emits, result);
     if (!status) status = conductivity_steady(request, bed, kelvins, result);
     free(emissivity);
     free(relative);
     return status;
-}
-
-/* If each sphere has one temperature, F_E is that of the first temperature. */
-static void conductivity_again(struct conductivity_request *request, const struct bed *bed, double kelvins,
-                               struct conduction *result) {
-    request->isothermal *= pow(kelvins / result->temperature, 3);
-    conduction_at(result, bed, kelvins);
 }
 
 static int conductivity_frame(void *conductivity_request, struct bed *bed) {
@@ -457,10 +427,10 @@ static int conductivity_frame(void *conductivity_request, struct bed *bed) {
     if (!status && request->at) status = bed_options_metres(&request->bed, bed, needs);
     for (int k = 0; k < request->temperatures && !status; ++k) {
         const double kelvins = request->temperature[k];
-        const bool again =
+        const bool again = /* if each sphere has one temperature, F_E is that of the first temperature */
             k > 0 && !request->solid.given && !contacts_given(&request->contacts) && result.temperature > 0;
         if (again)
-            conductivity_again(request, bed, kelvins, &result);
+            conduction_at(&result, bed, kelvins);
         else
             status = conductivity_at(request, bed, kelvins, emits, &result);
         if (!status) status = bed_options_write(&request->bed, bed, &what);

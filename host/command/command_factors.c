@@ -189,7 +189,7 @@ static int factors_check(struct factors_request *request) {
 /* Powers by factors of nodes may err far more than rows: a node of emissivity n exchanges little of what the sphere
  * does, and what it exchanges follows from small differences. Let x be the part of a row that goes to walls and
  * surroundings, and m = n/e. Errors of powers, over their root mean square, turned out to be those of rows times
- * sqrt(1/(m (m + (1 - m) x))), if temperatures differ from sphere to sphere. docs/methods_heat.md section 15. */
+ * sqrt(1/(m (m + (1 - m) x))), if temperatures differ from sphere to sphere. docs/methods.md section 27. */
 static double power_error(const struct factors_request *request, const fibrad_factors *matrix) {
     const double *surface = request->rule.emissivity, *node = request->rule.node_emissivity;
     double square = 0;

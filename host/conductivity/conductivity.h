@@ -37,6 +37,7 @@ struct conduction_rule {
     const double *emissivity;   /* [n] of the spheres */
     const double *conductivity; /* [n] k* of the spheres; NULL: each sphere has one temperature */
     const struct walls *walls;  /* sides of the bed, which reflect everything diffusely; NULL: none */
+    bool isothermal;            /* result->isothermal is wanted */
     int axis;                   /* the axis whose error counts; -1: all three */
     uint64_t seed;
     uint64_t paths; /* from each emitter; 0: as many as `error` needs */
@@ -75,6 +76,7 @@ struct conduction {
     double temperature;                 /* [K]; NaN: k is not known */
     double k[3], k_error[3];            /* [W/(m K)] */
     struct k_star k_star;
+    double isothermal; /* k_s at which F_E would be 95 % of this one, over T^3 [W/(m K4)]; NaN: not known */
     /* increase of F_E if flights may be e times as long, because of slabs without spheres */
     double growth[3];
     /* concentration of the variance in few groups of paths: sum of squares over squared sum, less the part of sizes */
@@ -104,11 +106,6 @@ double conduction_width(const struct bed *bed, const struct walls *walls, int ax
 /* Follows the paths of the emitters and sets the other results. Returns a status of the library. */
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                       fibrad_run *run, struct conduction *result);
-
-/* Estimates the conductivity of the solid [W/(m K)] at which F_E is 95 % of `result`, that of spheres with one
- * temperature, at result->temperature. Returns a status of the library. */
-int conduction_isothermal(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
-                          fibrad_run *run, const struct conduction *result, double *conductivity);
 
 /* The emissivity at which a sphere with one temperature reflects patterns of degree 1 as a sphere of relative
  * conductivity k* does: 1/(1/e + 1/(2 k*)). */

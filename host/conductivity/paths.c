@@ -26,7 +26,7 @@ enum { EMITTERS_AT_ONCE = 16 }; /* that a thread takes */
 #define GROWTH     8.0     /* largest ratio of all paths after a round to those before */
 #define BATCH_MOST (FIBRAD_PATHS_MAX / PARTS * PARTS)
 
-/* conduction_isothermal looks for the conductivity at which F_E is this part of F_E of spheres with one temperature. */
+/* find_isothermal looks for the conductivity at which F_E is this part of F_E of spheres with one temperature. */
 #define RIGHT 0.95
 
 /* Flights whose displacements are correlated if an effective emissivity is below 0.1, and below 0.01. */
@@ -35,7 +35,7 @@ enum { FLIGHTS_SLOW = 24, FLIGHTS_SLOWEST = 48 };
 /* A standard error is unreliable if the concentration is larger than this. The square root of the concentration is the
  * relative standard error of the variance. If the variances of groups have a tail of index a < 1, the concentration
  * tends to 1 - a however many groups there are: 1/4 for flights along channels, 1/2 for flights in slabs
- * (docs/methods_heat.md section 12). Without such a tail it tends to 0. */
+ * (docs/methods.md section 24). Without such a tail it tends to 0. */
 #define SETTLED 0.03
 
 /* Growth of F_E over F_E from which flights count as endless, however large the standard error is. Flights of 100
@@ -146,7 +146,7 @@ static double square_gaps(const struct bed *bed, int axis, struct extent *extent
 }
 
 /* Finds the growth of F_E. A slab of width h across an axis of period P adds h^2/(P d) ln(L/h) to F_E along the other
- * two axes, with the mean diameter d and the longest flight L (docs/methods_heat.md section 12). */
+ * two axes, with the mean diameter d and the longest flight L (docs/methods.md section 24). */
 static int find_growth(const struct bed *bed, struct conduction *result) {
     if (bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0) return STATUS_OK;
     struct extent *extents = malloc(bed->n * sizeof *extents);
@@ -348,6 +348,41 @@ static void describe_conducting(const struct bed *bed, const struct conduction_r
     result->flights = least >= .1 ? FIBRAD_FLIGHTS_DEFAULT : least >= .01 ? FLIGHTS_SLOW : FLIGHTS_SLOWEST;
 }
 
+/* The sum of F_E over the wanted axes, from PILOT paths, with all emissivities times `scale`. */
+static int follow_pilot(struct follower *f, double scale, const struct conduction *of, double *sum) {
+    const struct conduction_rule *rule = f->rule;
+    struct conduction result = *of;
+    struct conduction_rule scaled = *rule;
+    double *emissivity = malloc(f->bed->n * sizeof *emissivity);
+    if (!emissivity) return FIBRAD_E_MEMORY;
+    for (uint32_t i = 0; i < f->bed->n; ++i) emissivity[i] = scale * rule->emissivity[i];
+    scaled.emissivity = f->how.emissivity = emissivity, f->rule = &scaled;
+    f->tally = (struct tally){.moved = f->tally.moved};
+    const int status = follow_round(f, 1, (uint64_t)ceil(PILOT / PARTS / of->emitters) * PARTS, &result);
+    *sum = 0;
+    for (int axis = 0; axis < 3; ++axis) *sum += conduction_wants(of, axis) ? result.factor[axis] : 0;
+    f->how.emissivity = rule->emissivity, f->rule = rule;
+    free(emissivity);
+    return status;
+}
+
+/* F_E of spheres that conduct is about that of spheres with one temperature and the emissivity 1/(1/e + 1/(2 k*)). The
+ * paths of both emissivities are the same, so that their noise hardly counts. Between them F_E is a power of e. */
+static int find_isothermal(struct follower *f, struct conduction *result) {
+    const struct bed *bed = f->bed;
+    double grey, less, area = 0, weighted = 0;
+    int status = follow_pilot(f, 1, result, &grey);
+    if (!status) status = follow_pilot(f, RIGHT, result, &less);
+    if (status) return status;
+    const double power = log(less / grey) / log(RIGHT), over = pow(RIGHT, -1 / power) - 1; /* e/(2 k*) */
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        area += pow(bed->r[i], 2);
+        weighted += pow(bed->r[i], 2) * f->rule->emissivity[i] * 2 * bed->r[i] * bed->metres;
+    }
+    result->isothermal = weighted / area / (2 * over) * 4 * FIBRAD_STEFAN_BOLTZMANN;
+    return FIBRAD_OK;
+}
+
 int conduction_follow(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
                       fibrad_run *run, struct conduction *result) {
     struct follower f;
@@ -360,45 +395,11 @@ int conduction_follow(const struct bed *bed, const unsigned char *emits, const s
         status = follow_round(&f, (uint32_t)fmax(1, fmin(batches, (double)rule->paths / PARTS)), rule->paths, result);
     else if (!status)
         status = search(&f, batches, result);
-    follower_close(&f);
     result->seconds = progress_clock() - begun;
-    return status;
-}
-
-/* The sum of F_E over the wanted axes, from PILOT paths, with all emissivities times `scale`. */
-static int follow_pilot(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
-                        double scale, fibrad_run *run, const struct conduction *of, double *sum) {
-    struct conduction result = *of;
-    struct conduction_rule scaled = *rule;
-    struct follower f = {.scene = NULL};
-    double *emissivity = malloc(bed->n * sizeof *emissivity);
-    int status = emissivity ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    for (uint32_t i = 0; i < bed->n && !status; ++i) emissivity[i] = scale * rule->emissivity[i];
-    scaled.emissivity = emissivity;
-    if (!status) status = follower_open(&f, bed, emits, &scaled, run);
-    if (!status) status = follow_round(&f, 1, (uint64_t)ceil(PILOT / PARTS / of->emitters) * PARTS, &result);
-    *sum = 0;
-    for (int axis = 0; axis < 3; ++axis) *sum += conduction_wants(of, axis) ? result.factor[axis] : 0;
+    result->isothermal = NAN;
+    if (!status && rule->isothermal) status = find_isothermal(&f, result);
     follower_close(&f);
-    free(emissivity);
     return status;
-}
-
-/* F_E of spheres that conduct is about that of spheres with one temperature and the emissivity 1/(1/e + 1/(2 k*)). The
- * paths of both emissivities are the same, so that their noise hardly counts. Between them F_E is a power of e. */
-int conduction_isothermal(const struct bed *bed, const unsigned char *emits, const struct conduction_rule *rule,
-                          fibrad_run *run, const struct conduction *result, double *conductivity) {
-    double grey, less, area = 0, weighted = 0;
-    int status = follow_pilot(bed, emits, rule, 1, run, result, &grey);
-    if (!status) status = follow_pilot(bed, emits, rule, RIGHT, run, result, &less);
-    if (status) return status;
-    const double power = log(less / grey) / log(RIGHT), over = pow(RIGHT, -1 / power) - 1; /* e/(2 k*) */
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        area += pow(bed->r[i], 2);
-        weighted += pow(bed->r[i], 2) * rule->emissivity[i] * 2 * bed->r[i] * bed->metres;
-    }
-    *conductivity = weighted / area / (2 * over) * 4 * FIBRAD_STEFAN_BOLTZMANN * pow(result->temperature, 3);
-    return FIBRAD_OK;
 }
 
 void k_star_add(struct k_star *all, double relative) {

@@ -8,28 +8,37 @@
 
 #include "conductivity/conductivity.h"
 
-struct plates_problem {
-    const struct bed *bed;          /* a period along the axis is dropped */
-    const struct walls *sides;      /* insulated, in contact with nothing; NULL: none */
-    const double *emissivity;       /* [spheres]; NULL: contacts alone */
-    const double *relative;         /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
-    double temperature;             /* [K] mean of both plates */
-    bool touches;                   /* conductivities with contacts are wanted */
-    uint32_t contacts;              /* contacts across a period along the axis are left out */
-    const uint32_t *first, *second; /* [contacts] as in fibrad_heat_sources */
-    const double *conductance;      /* [contacts] likewise, for lengths in the unit of the bed */
+/* A bed between plates. */
+struct plates {
+    struct bed bed; /* open along the axis; its arrays are those of another bed */
+    double period;  /* along the axis, or 0 */
+    int axis;
+    struct walls walls; /* the lower plate, the upper plate, and then the sides */
+    fibrad_bed *made;
 };
 
 /* Whether the bed is periodic along both other axes, or ends at walls there. */
 bool plates_possible(const struct bed *bed, const struct walls *sides, int axis);
 
-/* The plates across an axis, the lower one first, and then the sides. */
-struct walls plates_walls(const struct bed *bed, const struct walls *sides, int axis);
+/* Puts plates at both ends of a bed. sides: insulated; NULL: none. Close the plates also after an error. Status of the
+ * library. */
+int plates_open(struct plates *plates, const struct bed *bed, const struct walls *sides, int axis, fibrad_run *run);
+void plates_close(struct plates *plates);
 
-/* Finds the conductivity by radiation, by contacts and by both, in W/(m2 K) times the unit of length. made: the bed of
- * the problem, open along the axis, with the walls of plates_walls. Status of the library. result->spheres is then
- * below PLATES_FITTED if too few spheres lie in the inner half. */
+struct plates_problem {
+    const double *emissivity; /* [spheres]; NULL: contacts alone */
+    const double *relative;   /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
+    double temperature;       /* [K] mean of both plates */
+    bool touches;             /* conductivities with contacts are wanted */
+    /* contacts, as in fibrad_heat_sources; those with sides and across a period along the axis are left out */
+    uint32_t contacts;
+    const uint32_t *first, *second;
+    const double *conductance;
+};
+
+/* Finds the conductivity by radiation, by contacts and by both, in W/(m2 K) times the unit of length. If fewer than
+ * PLATES_FITTED spheres lie in the inner half, the results are NaN. Status of the library. */
 enum { PLATES_FITTED = 40 };
-int plates_conduct(const struct plates_problem *problem, fibrad_bed *made, int axis, struct conduction_plates *result);
+int plates_conduct(const struct plates *plates, const struct plates_problem *problem, struct conduction_plates *result);
 
 #endif

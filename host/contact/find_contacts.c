@@ -9,7 +9,6 @@
 
 #include "contact/contact_list.h"
 #include "simple/cylinder.h"
-#include "simple/bed.h"
 
 enum { CLASSES_MAX = 64 };
 
@@ -276,16 +275,4 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
     free(s.celled);
     for (uint32_t c = 0; c < s.classes; ++c) free(s.class[c].start);
     return fibrad_contact_list_of(&found, rule, status, list);
-}
-
-int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list) {
-    if (!list) return FIBRAD_E_ARGUMENT;
-    *list = NULL;
-    int status = fibrad_bed_begin(bed);
-    if (status) return status;
-    free(bed->contacts);
-    bed->contacts = NULL;
-    status = fibrad_contacts_find(&bed->config, &bed->spheres, rule, &bed->contacts);
-    *list = bed->contacts;
-    return fibrad_bed_end(bed, status);
 }

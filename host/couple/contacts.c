@@ -10,7 +10,6 @@
 
 #include "contact/contact_list.h"
 #include "couple/insitu.h"
-#include "simple/fibrad_host.h"
 
 /* The indices of both ends in the list of particles; a wall has that of the wall plus the number of particles. */
 struct conductor {

@@ -57,7 +57,7 @@ $(BUILD)/couple/ranks: bench/ranks.c bench/messages.h $(COUPLE_LIBS)
 	$(MPICC) $(CFLAGS) $(COUPLE_FLAGS) $(LDFLAGS) $< $(COUPLE_LIBS) -lm -o $@
 
 ## couple: libfibrad_couple.a, fix fibrad of LAMMPS and the driver of LIGGGHTS, into build/couple (on a fresh machine: make deps-couple couple)
-.PHONY: couple couple-lib install-couple need-mpi deps-couple
+.PHONY: couple couple-lib install-couple need-mpi test-couple deps-couple
 
 couple: $(COUPLE_PRODUCTS)
 
@@ -100,6 +100,11 @@ need-mpi: | $(COUPLE_DEPS)
 $(COUPLE_OBJECTS) $(COUPLE_MESH_OBJECTS) $(COUPLE_PRODUCTS): Makefile host/couple/couple.mk
 
 -include $(COUPLE_OBJECTS:.o=.d) $(COUPLE_MESH_OBJECTS:.o=.d) $(BUILD)/couple/example.d $(BUILD)/couple/test_couple.d
+
+## test-couple: build and run all tests of the couplings, in minutes; without packages they are skipped, with a message
+test-couple:
+	for coupling in couple lammps liggghts; do $(WITH_MPI) tests/couple/check_$$coupling.sh all || exit; done
+	for rest in pages made; do $(WITH_MPI) tests/couple/check_$$rest.sh || exit; done
 
 ## deps-couple: install the Debian packages of the couplings: MPI, LAMMPS, LIGGGHTS
 deps-couple:

@@ -105,7 +105,7 @@ static double inner_product(const fibrad_insitu *s, const double *a, const doubl
  *
  *     (1 - root L root) y = root q(E),
  *
- * which conjugate gradients solve. Source: docs/methods_heat.md section 15. */
+ * which conjugate gradients solve. Source: docs/methods.md section 27. */
 static int solve_nodes(fibrad_insitu *s, const fibrad_flow *known) {
     fibrad_insitu_set *set = &s->set;
     const double *root = set->root.at, none[FIBRAD_WALLS_MAX] = {0};

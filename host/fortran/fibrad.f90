@@ -34,7 +34,6 @@ module fibrad
             wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = 0, tolerance = 0
         integer(c_int32_t) :: sweeps_max = 0
-        integer(c_int) :: uniform = 0
         type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr, &
             absorbed = c_null_ptr, contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0

@@ -1,4 +1,5 @@
 /* bed_options.c - options that all commands about beds share. SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE /* strverscmp; NOLINT(bugprone-reserved-identifier) */
 #include "frames/bed_options.h"
 
 #include <errno.h>
@@ -46,23 +47,7 @@ static int add_file(struct bed_options *options, const char *name) {
 
 /* Orders names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
 static int order_of_names(const void *a, const void *b) {
-    static const char digits[] = "0123456789";
-    const char *one = *(char *const *)a, *other = *(char *const *)b;
-    while (*one && *other) {
-        const size_t length = strspn(one, digits), width = strspn(other, digits);
-        if (length == 0 || width == 0) {
-            if (*one != *other) break;
-            ++one, ++other;
-            continue;
-        }
-        const char *first = one + strspn(one, "0"), *second = other + strspn(other, "0");
-        one += length, other += width;
-        if (one - first != other - second) return one - first < other - second ? -1 : 1;
-        const int order = strncmp(first, second, (size_t)(one - first));
-        if (order != 0) return order;
-    }
-    const int order = strcmp(one, other);
-    return order != 0 ? order : strcmp(*(char *const *)a, *(char *const *)b);
+    return strverscmp(*(char *const *)a, *(char *const *)b);
 }
 
 /* Takes the name of a file, or a pattern in quotes that the shell has not expanded. */

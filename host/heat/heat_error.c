@@ -17,7 +17,7 @@ enum {
 #define POINTS 64
 
 /* Least number of rays between walls if a wall is insulated, for each patch of a sphere. Patches of insulated walls
- * need more rays than other ones: docs/methods_heat.md section 7. */
+ * need more rays than other ones: docs/methods.md section 19. */
 #define RAYS_INSULATED (2 * FIBRAD_WALL_RAYS_DEFAULT / FIBRAD_HEAT_PATCHES_DEFAULT)
 
 /* The configuration of the options with defaults filled in. The number of directions follows from the emissivities of

@@ -112,8 +112,8 @@ int profile_option(const char *text, void *light_options) {
     }
     if (options->profile) return message(STATUS_USAGE, "--profile is given twice");
     options->profile = rest;
-    if (output_ends(rest, ".csv") || output_ends(rest, ".svg") || output_ends(rest, ".png")) return STATUS_OK;
-    return message(STATUS_USAGE, "--profile: '%.60s' ends in none of .csv, .svg and .png", rest);
+    return output_ends(rest, ".csv") ? STATUS_OK
+                                     : message(STATUS_USAGE, "--profile: '%.60s' does not end in .csv", rest);
 }
 
 int absorptivity_option(const char *text, void *absorptivity) {

@@ -19,7 +19,7 @@ enum { LIGHTS_MAX = 32 };
     }
 #define OPTION_PROFILE(request)                                                                                        \
     0, "profile", "AXIS[:BINS]:OUT",                                                                                   \
-        "write the absorbed light against x, y or z: .csv, .svg or .png; a bin is one mean diameter [none]",           \
+        "write the absorbed light against x, y or z to a .csv; a bin is one mean diameter [none]",                     \
         TO_FUNCTION(profile_option, request, light)
 
 /* A paragraph of --help. */

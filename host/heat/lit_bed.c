@@ -3,10 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/units.h"
 #include "cli/message.h"
 #include "heat/heat.h"
-#include "plot/gnuplot.h"
 
 int light_begin(struct heat *h) {
     const struct light_options *options = &h->light;
@@ -198,41 +196,6 @@ static void fill_bins(const struct light_state *state, const struct bed *bed, st
     }
 }
 
-/* Writes the bins with a separator. Columns: low end, high end, spheres, absorbed first, absorbed, in units of
- * `watts`. */
-static void print_bins(FILE *file, const struct light_bins *bins, char separator, double watts) {
-    for (uint32_t k = 0; k < bins->count; ++k) {
-        const struct light_bin *bin = &bins->bin[k];
-        fprintf(file, "%.9g%c%.9g%c%u%c%.9g%c%.9g\n", bin->low, separator, bin->low + bins->width, separator,
-                bin->spheres, separator, bin->first / watts, separator, bin->absorbed / watts);
-    }
-}
-
-static int draw_bins(const struct output *output, const struct light_state *state, const struct light_bins *bins,
-                     const char *name) {
-    struct gnuplot gnuplot;
-    const int status = gnuplot_start(&gnuplot, output);
-    if (status) return status;
-    FILE *script = gnuplot.script;
-    double most = 0;
-    for (uint32_t k = 0; k < bins->count; ++k) most = fmax(most, bins->bin[k].absorbed);
-    const struct prefixed unit = unit_prefixed(most, "W");
-    gnuplot_style(script, output->path, 800, 560);
-    fputs("$bins << END\n", script);
-    print_bins(script, bins, ' ', unit.scale);
-    fputs("END\nset label 1 '", script);
-    gnuplot_name(script, name);
-    fprintf(script,
-            "' at screen 0.03,0.955 font ',17' tc '#111111' noenhanced\n"
-            "set tmargin at screen 0.9; set bmargin at screen 0.13; set grid y; set yrange [0:*]; set key top left\n"
-            "set xrange [%.9g:%.9g]; set xlabel '%c'; set ylabel 'absorbed of the light [%s]'; set style fill solid "
-            "0.8 noborder\n"
-            "plot $bins using (($1+$2)/2):5:($2-$1) with boxes fc '#365c8d' title 'with reflections', "
-            "'' using (($1+$2)/2):4 with histeps lw 2 lc '#d1495b' title 'where it falls first'\n",
-            bins->bin[0].low, bins->bin[0].low + bins->count * bins->width, state->options->axis, unit.name);
-    return gnuplot_end(&gnuplot);
-}
-
 int light_profile(const struct heat *h) {
     const struct light_state *state = &h->lit;
     const struct light_options *options = state->options;
@@ -243,12 +206,12 @@ int light_profile(const struct heat *h) {
     int status = output_open(&output, options->profile);
     if (!status) status = make_bins(options, bed, &bins);
     if (!status) fill_bins(state, bed, &bins);
-    if (!status && output_ends(options->profile, ".csv")) {
+    if (!status) {
         fprintf(output.file, "%c_low,%c_high,spheres,absorbed_first_W,absorbed_W\n", options->axis, options->axis);
-        print_bins(output.file, &bins, ',', 1);
+        for (uint32_t k = 0; k < bins.count; ++k)
+            fprintf(output.file, "%.9g,%.9g,%u,%.9g,%.9g\n", bins.bin[k].low, bins.bin[k].low + bins.width,
+                    bins.bin[k].spheres, bins.bin[k].first, bins.bin[k].absorbed);
         status = output_flush(&output);
-    } else if (!status) {
-        status = draw_bins(&output, state, &bins, h->options.name);
     }
     free(bins.bin);
     return output_close(&output, status);

@@ -1,4 +1,4 @@
-/* plot_heat.h - a picture of temperatures and net radiative powers, by gnuplot. SPDX-License-Identifier: MIT */
+/* plot_heat.h - a picture of temperatures and net powers, by gnuplot. SPDX-License-Identifier: MIT */
 #ifndef PLOT_HEAT_H
 #define PLOT_HEAT_H
 
@@ -6,12 +6,10 @@
 #include "plot/plot_slice.h"
 #include "write/write.h"
 
-/* Draws four panels into an open output: two slices of the bed, powers or temperatures by height, and powers of
- * spheres, walls and surroundings. The slices show temperatures, absorbed light and powers, the first two of them that
- * differ from sphere to sphere. If only one differs, the second slice is at right angles to the first one. If
- * temperatures were found within a cylinder, they against radius take the place of the second slice, unless there is
- * light. name: a path, whose last part is the title. Status 0, STATUS_FILE if gnuplot is missing or fails,
- * STATUS_MEMORY, or that of a signal. */
+/* Draws two slices of the bed into an open output. They show temperatures, absorbed light and powers, the first two of
+ * them that differ from sphere to sphere. If only one differs, the second slice is at right angles to the first one.
+ * name: a path, whose last part is the title. Status 0, STATUS_FILE if gnuplot is missing or fails, STATUS_MEMORY, or
+ * that of a signal. */
 int plot_heat(const struct output *output, const char *name, const struct contents *what,
               const struct plot_plane *plane);
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "contact/contact_list.h"
+
 int fibrad_bed_begin(fibrad_bed *bed) {
     if (!bed) return FIBRAD_E_ARGUMENT;
     if (bed->busy) return FIBRAD_E_STATE;
@@ -154,4 +156,16 @@ void fibrad_bed_free(fibrad_bed *bed) {
     free(bed->light);
     free(bed->places);
     free(bed);
+}
+
+int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list) {
+    if (!list) return FIBRAD_E_ARGUMENT;
+    *list = NULL;
+    int status = fibrad_bed_begin(bed);
+    if (status) return status;
+    free(bed->contacts);
+    bed->contacts = NULL;
+    status = fibrad_contacts_find(&bed->config, &bed->spheres, rule, &bed->contacts);
+    *list = bed->contacts;
+    return fibrad_bed_end(bed, status);
 }

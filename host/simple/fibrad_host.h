@@ -131,7 +131,7 @@ void fibrad_bed_free(fibrad_bed *bed);
  * FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS. Scenes of few spheres have more: 40,000 over the
  * number of spheres. The field `points` then stands for masks: 64, 128 and 256 for 16, 32 and 64 chords. With more than
  * 1,536, and in all other cases, rows go along directions. So they do among triangles if there are more
- * than 171 spheres; masks serve there, too. docs/methods.md, section 12.
+ * than 171 spheres; masks serve there, too. docs/methods.md section 12.
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
  * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.
@@ -173,7 +173,7 @@ typedef struct fibrad_bed_matrix {
  *   Output   matrix: free with fibrad_bed_matrix_free; it does not need the bed
  *   Errors   as fibrad_beam_row (_cast_row, _exchange_row) and fibrad_matrix_init; _CANCELLED
  *   Cost     that of all rows over the threads; memory up to 64 bytes per entry of the raw rows
- *   Source   docs/methods.md; of exchange factors docs/methods_heat.md sections 2 to 4 */
+ *   Source   docs/methods.md; of exchange factors its sections 14 to 16 */
 int fibrad_bed_factors(fibrad_bed *bed, const fibrad_bed_rule *rule, fibrad_bed_matrix **matrix);
 
 /* Frees factors. NULL is allowed.
@@ -205,7 +205,7 @@ int fibrad_bed_wall_row(fibrad_bed *bed, uint32_t wall, const fibrad_wall_rule *
  *   Input    config: NULL for all defaults; `parts` is always 16
  *   Errors   as fibrad_heat_init and fibrad_heat_trace; _CANCELLED
  *   Cost     that of the traces over the threads; none if the beams are there
- *   Source   docs/methods_heat.md sections 5 to 9 */
+ *   Source   docs/methods.md sections 17 to 21 */
 int fibrad_bed_beams(fibrad_bed *bed, const fibrad_heat_config *config);
 
 /* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
@@ -285,7 +285,7 @@ typedef struct fibrad_light_result {
  *   Errors   as fibrad_light_empty and fibrad_bed_solve
  *            _UNSOLVABLE: nothing absorbs the light, and it cannot leave
  *   Cost     that of a solution
- *   Source   docs/methods_heat.md, Light from outside */
+ *   Source   docs/methods.md section 29 */
 int fibrad_bed_shine(fibrad_bed *bed, const fibrad_light_sources *sources, fibrad_light_result *result);
 
 /* A function of the caller that is called after each step.
@@ -344,7 +344,7 @@ typedef struct fibrad_span {
  *            _UNSOLVABLE: a sphere would fall below 0 K
  *            as fibrad_bed_factors or fibrad_bed_solve
  *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
- *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/methods_heat.md section 11 */
+ *   Source   R. Alexander, SIAM J. Numer. Anal. 14 (1977) 1006; docs/methods.md section 23 */
 int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_span *span);
 
 /* ---- contacts --------------------------------------------------------------------------------------------------- */
@@ -394,7 +394,7 @@ int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const 
  *   Output   conductance[n]: in the unit of fibrad_heat_sources.conductance
  *   Errors   _ARGUMENT
  *   Cost     1 microsecond for each contact with gas
- *   Source   docs/methods_heat.md, section 16 */
+ *   Source   docs/methods.md section 28 */
 int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
                             const double *gas, double *conductance);
 

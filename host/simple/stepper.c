@@ -10,7 +10,7 @@
  * dE/dT). Temperatures then follow from the powers q of that solution. The energy that the sum over spheres misses is
  * divided among them. So spheres lose what walls and surroundings gain, whatever the tolerance of the solution. The
  * embedded solution of first order differs by g h |f(T') - f(T1)|. This difference is kept below the tolerance; the
- * errors of second order add up to about the tolerance. docs/methods_heat.md section 11. */
+ * errors of second order add up to about the tolerance. docs/methods.md section 23. */
 #include <math.h>
 #include <string.h>
 

@@ -81,8 +81,6 @@ const char *fibrad_why_text(int why) {
         return "an array is missing";
     case FIBRAD_WHY_CONDUCTIVITY:
         return "a conductivity is not above 0";
-    case FIBRAD_WHY_UNIFORM:
-        return "spheres that conduct have no uniform radiosity";
     case FIBRAD_WHY_CONTACT:
         return "a contact has an end that is neither a sphere nor a wall";
     case FIBRAD_WHY_CONDUCTANCE:

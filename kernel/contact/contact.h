@@ -11,13 +11,13 @@
  *
  *     g = H/(sigma (T_i^2 + T_j^2) (T_i + T_j)).
  *
- * Temperatures below zero are allowed on the way: there E = -sigma (T^4 + zero^4). Source: docs/methods_heat.md. */
+ * Temperatures below zero are allowed on the way: there E = -sigma (T^4 + zero^4).
+ * Source: docs/methods.md section 28. */
 #ifndef FIBRAD_CONTACT_H
 #define FIBRAD_CONTACT_H
 
 #include <stdbool.h>
 #include <stdint.h>
-
 
 typedef enum fibrad_contact_kind {
     FIBRAD_CONTACT_NONE,  /* the node has no contacts */

@@ -54,7 +54,7 @@ static void enter_at(const fibrad_heat *heat, uint32_t b, const double axis[3], 
 }
 
 /* Resistances of spots are those of half-spaces, 1/(4 k a), times what a sphere adds, whose other side takes the heat
- * out evenly. docs/methods_heat.md section 16. */
+ * out evenly. docs/methods.md section 28. */
 static double resistance_of_spot(double conductivity, double size, double radius) {
     const double x = fibrad_min(size, SPOT_LARGEST);
     return (1 - x / FIBRAD_PI * (.5 + fibrad_log(2 * x) + .85 * x)) / (4 * conductivity * size * radius);

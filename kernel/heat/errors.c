@@ -21,7 +21,7 @@
  * temperature are wrong, all differences between found and given emissions are wrong by the same factor. Contacts pass
  * on errors of temperatures. What they pass on is the mean over solutions with random signs of all errors.
  *
- * docs/methods_heat.md section 9 has the terms in a table. */
+ * docs/methods.md section 21 has the terms in a table. */
 #include "heat/errors.h"
 #include "patches/subdivision.h"
 #include "scene/walls.h"
@@ -31,11 +31,11 @@
  *   B  settled beds, bench_heat                       S  500 equal spheres, bench_heat, docs/heat.md "Settings"
  *   W  16 scenes between walls, bench_walls           T  14 scenes between walls, bench_tolerance
  *   D  seven dilute beds                              F  cups and boxes against closed forms
- *   P  pairs of spheres of k* .01 to 1 against rings, docs/methods_heat.md section 13
- *   R  cubes, cups and mono2000 with insulated walls, docs/methods_heat.md section 7
+ *   P  pairs of spheres of k* .01 to 1 against rings, docs/accuracy.md "Powers of grey spheres"
+ *   R  cubes, cups and mono2000 with insulated walls, docs/accuracy.md
  *   M  small spheres beside triangles against the same beside planes, which are divided
  *   L  dim walls beside few spheres, tests/test_heat_walls.c residuals_are_estimated
- *   H  240 pairs of spheres and 400 spheres of poly2000, docs/methods_heat.md section 13 */
+ *   H  240 pairs of spheres and 400 spheres of poly2000, docs/accuracy.md */
 
 /* 1. beams and rays */
 #define BEAM_ERROR          FIBRAD_HEAT_BEAM_ERROR /* B W: even minus odd beams */
@@ -194,7 +194,7 @@ static double patch_error(const fibrad_heat *heat, uint32_t b) {
 static double spot_error(const fibrad_heat *heat, uint32_t b) {
     const uint32_t mesh = fibrad_heat_body(heat, FIBRAD_MESHES);
     double back = 0;
-    if (b >= heat->spheres || heat->solution.group > 1) return 0;
+    if (b >= heat->spheres) return 0;
     for (uint32_t m = 0; m < heat->meshes; m++) back = fibrad_max(back, 1 - heat->sources.emissivity[mesh + m]);
     return MESH_SPOT_ERROR * back * fibrad_heat_comes_back(heat, b) * heat->solution.power[b];
 }
@@ -499,8 +499,7 @@ static void find_joined_errors(const fibrad_heat *heat, const fibrad_heat_errors
 
 void fibrad_heat_find_errors(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     *errors = (fibrad_heat_errors){.all = spread_over(heat, 0, heat->patches)};
-    if (heat->solution.group == 1)
-        errors->few = FEW_ON_SPHERES * heat->config.patches * heat->thin / (2.0 * heat->beams);
+    errors->few = FEW_ON_SPHERES * heat->config.patches * heat->thin / (2.0 * heat->beams);
     errors->pool[1].samples = sample_all_rays(heat, errors);
     find_dim(heat, errors);
     find_sent(heat, errors);

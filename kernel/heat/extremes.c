@@ -9,7 +9,7 @@
 #include "patches/subdivision.h"
 #include "scene/grid_walk.h"
 
-/* Constants. They decide what is looked at. With them the table of docs/methods_heat.md section 13 was measured, from
+/* Constants. They decide what is looked at. With them the errors of docs/accuracy.md were measured, from
  * 240 pairs of spheres and 400 spheres of poly2000. */
 #define NEAR          1.0  /* largest gap to a neighbour, in radii of the smaller sphere */
 #define NEAR_COSINE   .985 /* patches with a larger cosine to a neighbour belong to the neighbour */

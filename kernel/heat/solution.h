@@ -33,7 +33,7 @@ static inline double fibrad_heat_absorbed(const fibrad_heat *heat, uint32_t body
  * 1/k of it if k links are spread at random. So exchange areas of such links are taken to be larger, by the share of
  * the link in the area of the patch. Rays are spread more evenly than random ones. Beams of one direction are parallel,
  * so that several of them connect the same two surfaces. The two factors are measured in cubes, cups and mono2000 with
- * insulated walls: docs/methods_heat.md section 7. */
+ * insulated walls: docs/methods.md section 19. */
 #define FIBRAD_HEAT_RAYS_RETURN  .7
 #define FIBRAD_HEAT_BEAMS_RETURN 1.5
 static inline double fibrad_heat_enlarged(double area, double factor, double back_from, double back_to) {

@@ -375,7 +375,7 @@ static void shift_black(fibrad_heat *heat) {
 static void find_back(fibrad_heat *heat) {
     heat->solution.sends_back = false;
     for (uint32_t b = heat->spheres; b < heat->bodies; b++) {
-        const bool all = fibrad_heat_reflects(heat, b) && heat->solution.group <= FIBRAD_HEAT_FOUR;
+        const bool all = fibrad_heat_reflects(heat, b);
         double *back = heat->solution.back - fibrad_heat_others(heat);
         heat->solution.sends_back = heat->solution.sends_back || (all && heat->first[b] < heat->first[b + 1]);
         for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
@@ -476,8 +476,8 @@ static void finish_contacts(fibrad_heat *heat) {
 
 /* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the
  * error would fall with the area of patches, and a third of the difference between both levels would be right. Near
- * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds: docs/methods_heat.md section
- * 6. */
+ * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds:
+ * docs/methods.md section 18. */
 static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
@@ -492,16 +492,12 @@ static void finish_powers(fibrad_heat *heat) {
             if (fibrad_heat_conducts(heat, b)) fibrad_heat_stand_for_absorbed(heat, b, -1);
     }
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        if (heat->solution.group > 1)
-            heat->solution.coarse[b] = heat->solution.power[b],
-            heat->solution.coarse_emission[b] = heat->sources.emission[b];
         heat->solution.power[b] += FIBRAD_HEAT_EXTRAPOLATION * (heat->solution.power[b] - heat->solution.coarse[b]);
         if (fibrad_heat_is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
     if (heat->contacts.count > 0) finish_contacts(heat);
-    if (heat->solution.group == 1)
-        for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
+    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
     send_means(heat);
 }
 
@@ -579,11 +575,9 @@ static bool level_solved(fibrad_heat *heat) {
 /* Adds what the residual of this level leaves of each extrapolated power. */
 static void note_unsettled(fibrad_heat *heat) {
     const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
-    const double part = coarse                      ? FIBRAD_HEAT_EXTRAPOLATION
-                        : heat->solution.group == 1 ? 1 + FIBRAD_HEAT_EXTRAPOLATION
-                                                    : 1;
+    const double part = coarse ? FIBRAD_HEAT_EXTRAPOLATION : 1 + FIBRAD_HEAT_EXTRAPOLATION;
     find_left(heat);
-    if (heat->solution.group > 1) {
+    if (coarse) {
         fibrad_zero(heat->solution.unsettled, heat->bodies * sizeof *heat->solution.unsettled);
         heat->solution.sent_unsettled = 0;
     }

@@ -179,7 +179,6 @@ static int sources_why(const fibrad_heat *heat, const fibrad_heat_sources *s) {
     if (!is_temperature(s->surroundings)) return FIBRAD_WHY_SURROUNDINGS;
     if (!is_sigma(s->sigma)) return FIBRAD_WHY_SIGMA;
     if (!light_valid(heat, s->light) || !light_valid(heat, s->absorbed)) return FIBRAD_WHY_LIGHT;
-    if (s->uniform && s->conductivity != NULL) return FIBRAD_WHY_UNIFORM;
     return s->tolerance >= 0 && s->tolerance < 1 ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_TOLERANCE;
 }
 
@@ -319,9 +318,9 @@ static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources 
 
 /* Sets emissivity and emission of a body. The radiosities of an earlier solution are shifted by the change of emission.
  * Their detail is taken off, since the coarser level comes first. */
-static void set_emission(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b, double eps, double emission) {
+static void set_emission(fibrad_heat *heat, uint32_t b, double eps, double emission) {
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        if (heat->solution.warm && !s->uniform && (eps < 1 || fibrad_heat_conducts(heat, b)))
+        if (heat->solution.warm && (eps < 1 || fibrad_heat_conducts(heat, b)))
             heat->solution.radiosity[a] += emission - heat->sources.emission[b] - heat->solution.detail[a];
         else
             heat->solution.radiosity[a] = emission, heat->solution.detail[a] = 0;
@@ -335,7 +334,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     const bool dark = source->emissivity == 0, touching = in_contact(heat, b);
     const double emission = first_emission(heat, s, middle, b, source);
     if (dark && touching) heat->sources.emission[b] = middle; /* its radiosities do not follow its own emission */
-    set_emission(heat, s, b, source->emissivity, dark ? middle : emission);
+    set_emission(heat, b, source->emissivity, dark ? middle : emission);
     heat->sources.emission[b] = emission;
     heat->sources.temperature[b] = dark && !touching ? __builtin_nan("") : source->temperature;
     if ((dark && !touching) || is_given(source->temperature)) return;
@@ -392,9 +391,9 @@ static void set_walls(fibrad_heat *heat, const fibrad_heat_sources *s, double mi
         set_body(heat, s, middle, fibrad_heat_body(heat, k), &source[k]);
     }
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++)
-        set_emission(heat, s, fibrad_heat_beyond(heat, k), 1, radiosity_beyond(heat, k));
+        set_emission(heat, fibrad_heat_beyond(heat, k), 1, radiosity_beyond(heat, k));
     for (uint32_t m = 0; m < heat->meshes; m++) set_mesh(heat, s, middle, m, source[FIBRAD_MESHES + m]);
-    set_emission(heat, s, heat->bodies - 1, 1, 0);
+    set_emission(heat, heat->bodies - 1, 1, 0);
 }
 
 /* Sets the conductivities of spheres, and their unevenness at the emissions with which the search begins. */
@@ -454,7 +453,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
-    heat->solution.group = sources->uniform ? UINT32_MAX : FIBRAD_HEAT_FOUR;
+    heat->solution.group = FIBRAD_HEAT_FOUR;
     heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, sources, unknown);
     heat->sources.settled = heat->sources.tolerance;
     if (unknown)

@@ -4,7 +4,7 @@
  * The rows of spheres tell what walls and spheres exchange. Paths tell what walls exchange with each other, and also
  * the total of each wall. First the shares among walls are brought to a total between both, weighted by their
  * errors. Then all rows are brought to 1 together, X_pq u_p u_q, where walls are rows as spheres are.
- * docs/methods_heat.md section 4. */
+ * docs/methods.md section 16. */
 #include "base/constants.h"
 #include "matrix/matrix.h"
 

@@ -159,7 +159,7 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
  * which have several patches within these directions. So the beam of each open point has a direction of its own, from a
  * disc about the direction of the window. The density falls towards the rim of the disc. Another point of the set
  * chooses the direction. If spheres hide a part of the window, they hide a part of its neighbours, too. The disc is
- * then smaller. Otherwise beams would meet walls that are hidden: docs/methods.md, section 9. */
+ * then smaller. Otherwise beams would meet walls that are hidden: docs/methods.md section 9. */
 #define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
 /* The patch that the beam of open point p of window k meets. */

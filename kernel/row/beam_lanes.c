@@ -158,7 +158,7 @@ static void compare_window(beam_windows *windows, uint32_t from, uint32_t k, dou
 }
 
 /* The error that the open part of the row would have if windows differed at random, by as much as nearby windows do.
- * docs/methods.md, section 11, compares it with errors. */
+ * docs/methods.md section 11; docs/accuracy.md compares it with errors. */
 static double open_error_of(const beam_windows *windows) {
     if (windows->compared == 0) return 0;
     return fibrad_sqrt(windows->roughness / (6.0 * windows->compared * windows->count));

@@ -24,7 +24,7 @@ static double share_of_caps(const fibrad_scene *scene, uint32_t place, double sh
     return fibrad_max(0, 1 - sum);
 }
 
-/* docs/methods.md, section 9. What the spheres of the row lose is summed in whole numbers. So the order of columns,
+/* docs/methods.md section 9. What the spheres of the row lose is summed in whole numbers. So the order of columns,
  * which the caller chooses, changes no bit. */
 void fibrad_row_cut(const fibrad_scene *scene, uint32_t place, double wall[FIBRAD_SLOTS], fibrad_row *row) {
     double share[FIBRAD_WALLS] = {0};

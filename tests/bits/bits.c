@@ -538,17 +538,15 @@ static int hash_heat(const struct scene *s, int isa) {
 static int hash_heat_settings(const struct scene *s, int isa) {
     static const struct {
         fibrad_heat_config config;
-        int uniform;
         const char *name[2];
     } cases[] = {
-        {{30, 64, 24, 1, 0}, 0, {"heat.patches24.3", "heat.patches24.8"}},
-        {{30, 64, 96, 1, 0}, 0, {"heat.patches96.3", "heat.patches96.8"}},
-        {{30, 64, 384, 1, 0}, 0, {"heat.patches384.3", "heat.patches384.8"}},
-        {{30, 64, 24, 2, 0}, 0, {"heat.parts2.3", "heat.parts2.8"}},
-        {{30, 64, 24, 7, 0}, 0, {"heat.parts7.3", "heat.parts7.8"}},
-        {{10, 128, 24, 2, 0}, 0, {"heat.points128.3", "heat.points128.8"}},
-        {{10, 256, 24, 2, 0}, 0, {"heat.points256.3", "heat.points256.8"}},
-        {{30, 64, 24, 2, 0}, 1, {"heat.uniform.3", "heat.uniform.8"}},
+        {{30, 64, 24, 1, 0}, {"heat.patches24.3", "heat.patches24.8"}},
+        {{30, 64, 96, 1, 0}, {"heat.patches96.3", "heat.patches96.8"}},
+        {{30, 64, 384, 1, 0}, {"heat.patches384.3", "heat.patches384.8"}},
+        {{30, 64, 24, 2, 0}, {"heat.parts2.3", "heat.parts2.8"}},
+        {{30, 64, 24, 7, 0}, {"heat.parts7.3", "heat.parts7.8"}},
+        {{10, 128, 24, 2, 0}, {"heat.points128.3", "heat.points128.8"}},
+        {{10, 256, 24, 2, 0}, {"heat.points256.3", "heat.points256.8"}},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         fibrad_heat *heat;
@@ -556,7 +554,6 @@ static int hash_heat_settings(const struct scene *s, int isa) {
         for (int high = 0; high < 2; high++) {
             fibrad_heat_sources sources = sources_of(s, 7, .1, .9);
             for (uint32_t i = 0; i < s->n; i++) emissivity[i] = high ? .8 : .3;
-            sources.uniform = cases[k].uniform;
             if (heat_solve(s, heat, &sources, cases[k].name[high])) return 1;
         }
     }

@@ -589,7 +589,7 @@ fails "particle 10 at (4.75951, 11.5, 2.78234): its centre lies beyond wall 1, t
 for ends in "wall ymin open wall ymax open" "wall zcylinder 0 0 30 temperature 1000 emissivity 1 wall xmin open wall xmax open"; do
     fails "the walls do not bound a box or a cylinder" "xcylinder and $ends" floor "xcylinder 0 0 30 temperature 1000 emissivity .9 $ends"
 done
-fails "an opening.*wall zmax open" "a cylinder without ends" floor "ycylinder 0 0 30 temperature 1000 emissivity .9"
+fails "an opening.*zmax open" "a cylinder without ends" floor "ycylinder 0 0 30 temperature 1000 emissivity .9"
 fails "emissivity" "emissivity out of range" also "fix bad all fibrad 1 1 emissivity 1.5 surroundings 300 cp 1"
 fails "$work/none.stl: No such file" "a mesh that is not there" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1 wall mesh $work/none.stl temperature 300 emissivity 1"

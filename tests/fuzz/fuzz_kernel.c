@@ -435,7 +435,7 @@ static void begin_solution(struct session *s) {
     sources.temperature = temperature, sources.emissivity = emissivity;
     sources.wall_temperature = wall_temperature, sources.wall_emissivity = wall_emissivity;
     sources.surroundings = byte() == 1 ? coordinate() : byte() / 16.;
-    sources.sweeps_max = 1 + byte() % 20, sources.uniform = byte() % 4 == 0;
+    sources.sweeps_max = 1 + byte() % 20;
     if (byte() == 1) sources.sigma = coordinate();
     if (byte() == 1) sources.tolerance = coordinate();
     for (uint32_t i = 0; i < s->contents.n; i++) {

@@ -1,4 +1,4 @@
-# test_examples.py - the examples, and all that docs/python.md shows, run. SPDX-License-Identifier: MIT
+# test_examples.py - the examples, and all that docs/embedding.md shows, run. SPDX-License-Identifier: MIT
 import dataclasses
 import doctest
 import os
@@ -44,7 +44,7 @@ def test_what_is_public_is_documented():
 
 def test_page(tree, tmp_path, monkeypatch):
     """Python blocks of the page, one after the other, as one reader types them, with a quarter of a bed."""
-    page = (tree / "docs" / "python.md").read_text(encoding="utf-8")
+    page = (tree / "docs" / "embedding.md").read_text(encoding="utf-8")
     blocks = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
     assert len(blocks) > 4
     lines = (tree / "tests" / "data" / "mono2000.dump").read_text(encoding="ascii").splitlines()
@@ -54,7 +54,7 @@ def test_page(tree, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = {}
     for block in blocks:
-        exec(compile(block, f"docs/python.md: {block.splitlines()[0]}", "exec"), names)
+        exec(compile(block, f"docs/embedding.md: {block.splitlines()[0]}", "exec"), names)
 
 
 def test_cooling(examples):

@@ -282,8 +282,6 @@ def test_spheres_that_conduct():
         found = heat.solve([1000, np.nan], 0.8, power=50., surroundings=600, conductivity=[2., 5.])
         with pytest.raises(fibrad.InputError, match="conductivity"):
             heat.solve(1000, 0.8, surroundings=600, conductivity=0)
-        with pytest.raises(fibrad.InputError, match="conductivity is given, and uniform"):
-            heat.solve(1000, 0.8, surroundings=600, conductivity=1, uniform=True)
     assert np.array_equal(plain.least_temperatures, plain.temperatures)
     assert same.temperatures == pytest.approx(plain.temperatures, rel=1e-5)
     rise = -found.spheres / (8 * np.pi * 0.03 * np.array([2., 5.]))

@@ -112,7 +112,7 @@ static int furnace_help(void) {
          "fibrad furnace FILE [options]\n\n"
          "Temperatures and wall fluxes of a box filled with a grey medium, between grey diffuse walls. Theta is a "
          "ratio of\n"
-         "moments of the intensity. docs/furnace.md has the equations.\n"
+         "moments of the intensity. docs/validation.md has the equations.\n"
          "  hfm     heat-flux method: six fluxes, Theta = 1\n"
          "  mchf    Monte Carlo and heat flux: bundles of rays measure Theta\n"
          "  mchf-x  as mchf; bundles measure also the transverse term, which mchf omits\n"
@@ -226,7 +226,7 @@ static void furnace_print_comparison(FILE *text, const struct request *request, 
     fputs("# The paper states at most 1 % between mchf and the zone method, and a colder furnace in case 2. The "
           "reference\n"
           "# confirms neither: mchf errs by up to 6 % in case 1 and 19 % in case 2, and case 2 is hotter everywhere\n"
-          "# (docs/furnace.md).\n",
+          "# (docs/validation.md).\n",
           text);
 }
 

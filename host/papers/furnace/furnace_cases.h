@@ -11,7 +11,7 @@ fibrad_furnace_config furnace_case(int number);
 
 /* Reference temperatures on the axis [K] at furnace_reference_z [m]. They come from Monte Carlo in equilibrium with 3e8
  * bundles and cells of 0.1 m, interpolated as by furnace_axis_temperature. The standard error is at most 0.1 K.
- * docs/furnace.md describes how they were made. */
+ * docs/validation.md describes how they were made. */
 enum { FURNACE_REFERENCES = 21 };
 extern const double furnace_reference_z[FURNACE_REFERENCES];
 double furnace_reference(int number, int k);

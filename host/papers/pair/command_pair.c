@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/output.h"
 #include "command/commands.h"
+#include "fibrad_surface.h"
 #include "papers/pair/exact_gsl.h"
 #include "papers/pair/reference.h"
 #include "text/report.h"
@@ -29,6 +30,8 @@ struct pair_request {
     uint32_t n;
     double x[SPHERES_MAX], y[SPHERES_MAX], z[SPHERES_MAX], r[SPHERES_MAX];
     struct method_options methods;
+    fibrad_surface_rule surface;
+    bool plain;       /* --no-correction */
     double error;     /* 0: not given */
     const char *json; /* NULL: not given */
     struct report report;
@@ -66,6 +69,21 @@ static int take_length(const char *text, void *pair_request) {
     }
 }
 
+/* Takes the argument of --nf, a built-in number of nodes, into a uint32_t. */
+static int take_nodes(const char *text, void *nodes) {
+    uint32_t *wanted = nodes;
+    const int status = options_count("--nf", text, 1, UINT32_MAX, wanted);
+    char sizes[64] = "";
+    int length = 0;
+    for (uint32_t size = FIBRAD_NODES_MIN, next = 13, sum; size <= FIBRAD_NODES_MAX && !status;
+         size = next, next = sum) {
+        if (*wanted == size) return STATUS_OK;
+        length += snprintf(sizes + length, sizeof sizes - (size_t)length, "%s%" PRIu32, length ? ", " : "", size);
+        sum = size + next;
+    }
+    return status ? status : message(STATUS_USAGE, "--nf: %.40s is not built in; %s are", text, sizes);
+}
+
 static const struct option pair_table[] = {
     {0, "", NULL, NULL, TO_REQUEST(take_length)},
     {0, "method", "NAME",
@@ -86,9 +104,9 @@ static const struct option pair_table[] = {
     {0, "nf", "N",
      "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(
          FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]",
-     TO_FUNCTION(option_nodes, struct pair_request, methods.surface.nodes)},
+     TO_FUNCTION(take_nodes, struct pair_request, surface.nodes)},
     {0, "no-correction", NULL, "surface: plain sums [corrected by the exact factor without obstacles]",
-     TO_FLAG(struct pair_request, methods.plain)},
+     TO_FLAG(struct pair_request, plain)},
     {0, "json", "OUT", "write the output as JSON, with all digits [none]", TO_PATH(struct pair_request, json)},
     {OPTION_HELP},
     {.name = NULL}};
@@ -123,6 +141,10 @@ static int pair_parse(struct pair_request *request, int argc, char **argv) {
     request->r[0] = request->r1;
     request->r[1] = request->r2;
     request->z[1] = request->r1 + request->r2 + request->gap;
+    if ((request->surface.nodes || request->plain) && request->methods.method != METHOD_SURFACE)
+        return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
+    if (request->plain) request->surface.flags |= FIBRAD_SURFACE_NO_CORRECTION;
+    if (!request->surface.nodes) request->surface.nodes = FIBRAD_NODES_DEFAULT;
     return methods_check(&request->methods);
 }
 
@@ -298,8 +320,8 @@ static int pair_surface(struct pair_request *request, double *f12) {
     if (status) return status;
     double *scratch = malloc(FIBRAD_SURFACE_SCRATCH(obstacles.n) * sizeof *scratch);
     if (!scratch) return message_memory();
-    status = fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->methods.surface, scratch,
-                                 f12, &facts);
+    status = fibrad_surface_pair(request->r1, request->r2, request->gap, &obstacles, &request->surface, scratch, f12,
+                                 &facts);
     free(scratch);
     if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
     report_value(&request->report, "error_estimate", facts.error, 3);

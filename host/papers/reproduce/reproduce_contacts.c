@@ -3,7 +3,6 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
-#include "contact/contact_list.h"
 #include "bed/packing.h"
 #include "cli/message.h"
 #include "conductivity/plates.h"
@@ -22,67 +21,67 @@
 #define ABSOLUTE    273.15
 enum { SPHERES = 1000, WALKS = 60 };
 
-/* A periodic bed of unit spheres, its contacts, and their conductances over the radius. */
+/* A periodic bed of unit spheres, between plates across each axis. */
 struct touching_bed {
     struct bed bed;
-    fibrad_contact_list *list;
-    double *solid, *gas, *conductance;
+    struct plates plates[3];
 };
 
 static void touching_free(struct touching_bed *t) {
-    free(t->list);
-    free(t->solid);
-    free(t->gas);
-    free(t->conductance);
+    for (int axis = 0; axis < 3; ++axis) plates_close(&t->plates[axis]);
     bed_free(&t->bed);
 }
 
 static int touching_make(struct touching_bed *t, uint32_t n, double porosity) {
+    fibrad_run run = {.threads = 1};
     *t = (struct touching_bed){.bed = bed_empty()};
     int status = bed_make_jammed(&t->bed, n, 1 - porosity, 1000, 1);
+    for (int axis = 0; axis < 3 && !status; ++axis) {
+        status = plates_open(&t->plates[axis], &t->bed, NULL, axis, &run);
+        status = bed_status(&t->bed, "bed", status, &run.fault);
+    }
+    return status;
+}
+
+/* The conductivity along an axis by gas and spots, in the unit of conductances over the radius. */
+static int conduct_along(const struct plates *plates, double k_solid, double k_gas, double spot, double least,
+                         double *k) {
+    const fibrad_contact_rule rule = {.gas_reach = GAS_REACH, .gas_least = least};
+    const fibrad_contact_list *list;
+    struct conduction_plates along;
+    int status = fibrad_bed_contacts(plates->made, &rule, &list);
     if (status) return status;
-    const fibrad_scene_config box = bed_scene(&t->bed, NULL);
-    const fibrad_spheres spheres = bed_spheres(&t->bed);
-    const fibrad_contact_rule rule = {.gas_reach = GAS_REACH};
-    if (fibrad_contacts_find(&box, &spheres, &rule, &t->list)) return message_memory();
-    const size_t contacts = (size_t)t->list->n + 1;
-    t->solid = calloc(n, sizeof *t->solid), t->gas = calloc(contacts, sizeof *t->gas);
-    t->conductance = calloc(contacts, sizeof *t->conductance);
-    return t->solid && t->gas && t->conductance ? STATUS_OK : message_memory();
+    double *room = calloc(plates->bed.n + 2 * (size_t)list->n + 1, sizeof *room);
+    double *solid = room, *gas = room + plates->bed.n, *conductance = gas + list->n;
+    if (!room) return FIBRAD_E_MEMORY;
+    for (uint32_t i = 0; i < plates->bed.n; ++i) solid[i] = k_solid;
+    for (uint32_t c = 0; c < list->n; ++c) gas[c] = k_gas;
+    status = fibrad_contacts_conduct(list, &rule, solid, gas, conductance);
+    for (uint32_t c = 0; c < list->n; ++c)
+        if (list->second[c] < plates->bed.n && list->distance[c] < 2 + TOUCHING) conductance[c] += 2 * k_solid * spot;
+    const struct plates_problem problem = {.temperature = 1000,
+                                           .contacts = list->n,
+                                           .first = list->first,
+                                           .second = list->second,
+                                           .conductance = conductance};
+    if (!status) status = plates_conduct(plates, &problem, &along);
+    free(room);
+    *k = along.conduction.k;
+    return status;
 }
 
 /* The conductivity of the bed by gas and spots, as the mean of three axes [W/(m K)]. spot, least: radius of the spots
  * of spheres that touch, and the least gap, over the radius. */
 static int touching_conduct(struct touching_bed *t, double k_solid, double k_gas, double spot, double least,
                             double *k) {
-    const fibrad_contact_rule rule = {.gas_reach = GAS_REACH, .gas_least = least};
-    const struct plates_problem problem = {.bed = &t->bed,
-                                           .temperature = 1000,
-                                           .contacts = t->list->n,
-                                           .first = t->list->first,
-                                           .second = t->list->second,
-                                           .conductance = t->conductance};
-    fibrad_run run = {.threads = 1};
-    for (uint32_t i = 0; i < t->bed.n; ++i) t->solid[i] = k_solid;
-    for (uint32_t c = 0; c < t->list->n; ++c) t->gas[c] = k_gas;
-    int status = fibrad_contacts_conduct(t->list, &rule, t->solid, t->gas, t->conductance);
-    for (uint32_t c = 0; c < t->list->n; ++c)
-        if (t->list->distance[c] < 2 + TOUCHING) t->conductance[c] += 2 * k_solid * spot;
+    int status = FIBRAD_OK;
     *k = 0;
     for (int axis = 0; axis < 3 && !status; ++axis) {
-        struct conduction_plates along = {.spheres = 0};
-        struct bed open = t->bed;
-        fibrad_bed *made;
-        open.period[axis] = 0;
-        const struct walls plates = plates_walls(&open, NULL, axis);
-        const fibrad_scene_config scene = bed_scene(&open, &plates);
-        const fibrad_spheres spheres = bed_spheres(&open);
-        status = fibrad_bed_new(&made, &scene, &spheres, &run);
-        if (!status) status = plates_conduct(&problem, made, axis, &along);
-        fibrad_bed_free(made);
-        *k += along.conduction.k / 3;
+        double along = 0;
+        status = conduct_along(&t->plates[axis], k_solid, k_gas, spot, least, &along);
+        *k += along / 3;
     }
-    return bed_status(&t->bed, "bed", status, &run.fault);
+    return bed_status(&t->bed, "bed", status, &(fibrad_fault){0});
 }
 
 /* The same with radiation of spheres of k* = k_solid/(4 sigma T^3 d) added. radius [m]. */
@@ -90,7 +89,9 @@ static int touching_radiate(struct touching_bed *t, double kelvins, double k_sol
                             double radius, double *k) {
     const double unit = 4 * FIBRAD_STEFAN_BOLTZMANN * pow(kelvins, 3) * 2 * radius;
     double factor = 0;
-    int status = touching_conduct(t, k_solid, k_gas, spot, GAS_LEAST / radius, k);
+    int status = STATUS_OK;
+    *k = 0;
+    if (k_gas > 0 || spot > 0) status = touching_conduct(t, k_solid, k_gas, spot, GAS_LEAST / radius, k);
     if (!status) status = grey_conduction(&t->bed, EMITTING, k_solid / unit, WALKS, &factor);
     *k += factor * unit;
     return status;

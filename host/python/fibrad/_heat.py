@@ -223,7 +223,7 @@ class Heat(Bed):
     def solve(self, temperature: Optional[ArrayLike], emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]], *,
               power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
               wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
-              insulated: Collection[str] = (), tolerance: Optional[float] = None, uniform: bool = False,
+              insulated: Collection[str] = (), tolerance: Optional[float] = None,
               sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None,
               conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Powers:
         """Net powers and temperatures.
@@ -253,8 +253,6 @@ class Heat(Bed):
         tolerance : float, optional
             Residual at which to stop, relative to the differences of emission. Default: 1e-3, or 1e-5 if a temperature
             is unknown.
-        uniform : bool
-            True: one radiosity for each sphere and wall. This is good only for emissivities near 1.
         sigma : float
             [W/(m2 K4)] Emission is ``sigma T**4``.
         light : Absorbed, optional
@@ -292,8 +290,6 @@ class Heat(Bed):
         if power is not None and powers is not None and np.ndim(power) == 0:
             powers = np.where(np.isnan(kelvins), powers, math.nan)
         conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
-        if conducts is not None and uniform:
-            raise refuse("conductivity is given, and uniform is True: with one radiosity a sphere has no sides")
         insulated = several("insulated", insulated)
         given_walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
         if light is not None:
@@ -310,7 +306,7 @@ class Heat(Bed):
         shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
         sources = HeatSources(surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX),
                               sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
-                              uniform=bool(uniform), temperature=pointer(kelvins), power=pointer(powers),
+                              temperature=pointer(kelvins), power=pointer(powers),
                               conductivity=pointer(conducts),
                               **pointers(given_walls))
         warn_around(container, surroundings, given_walls["wall_temperature"], kelvins)

@@ -14,7 +14,7 @@ class HeatSources(Structure):
                 ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
                 ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
                 ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
-                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32), ("uniform", c_int),
+                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32),
                 ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
                 ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
                 ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
