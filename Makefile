@@ -69,8 +69,8 @@ sources = $(sort $(wildcard $(1)))
 
 LANED   := $(call sources,kernel/*/*_lanes.c) # compiled once per instruction set
 KERNEL  := $(filter-out %_lanes.c,$(call sources,kernel/*/*.c))
-SIMPLE  := $(call sources,host/simple/*.c host/contact/*.c) # libfibrad_host.a
-HOST    := $(filter-out $(addprefix host/,simple/% contact/% couple/% python/% tables/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
+SIMPLE  := $(call sources,host/simple/*.c) # libfibrad_host.a
+HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/% tables/%),$(call sources,host/*/*.c host/read/*/*.c host/papers/*/*.c)) # the program, besides main.c
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 # other machines, and what takes long: `make nightly`

@@ -3,7 +3,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 
-#include "contact/contact_list.h"
+#include "simple/contact_list.h"
 #include "host_owned.h"
 #include "scenes.h"
 #include "meshes.h"

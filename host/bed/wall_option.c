@@ -2,14 +2,12 @@
 #include "bed/wall_option.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
-#include "cli/options.h"
-#include "cli/spelling.h"
 #include "simple/cylinder.h"
-#include "text/text.h"
 
 static fibrad_plane plane_at(int number, double at) { return (fibrad_plane){number / 2, number % 2, at}; }
 

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/bed_scene.h"
 #include "cli/message.h"
 #include "cli/targets.h"
 #include "command/commands.h"

@@ -1,5 +1,5 @@
-/* plates.h - conductivity of a bed between two black plates; no sphere gains or loses heat. SPDX-License-Identifier:
- * MIT
+/* plates.h - conductivity of a bed between two black plates; no sphere gains or loses heat.
+ * SPDX-License-Identifier: MIT
  *
  * The plates stand at both ends of the spheres along an axis. Spheres within a diameter of a plate have its
  * temperature. The gradient is that of a straight line through the temperatures of the spheres in the inner half. */

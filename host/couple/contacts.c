@@ -8,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/contact_list.h"
+#include "simple/contact_list.h"
 #include "couple/insitu.h"
 
 /* The indices of both ends in the list of particles; a wall has that of the wall plus the number of particles. */

@@ -38,7 +38,7 @@ COUPLE_SCRIPTS = tests/couple/check_couple.sh tests/couple/check_made.sh
 
 COUPLE_OBJECTS = $(COUPLE:%.c=$(BUILD)/%.o)
 # of the simple layer, which users need not link: contacts; threads and their memory
-COUPLE_SIMPLE = $(filter $(BUILD)/host/contact/%,$(SIMPLE_OBJECTS)) $(BUILD)/host/simple/heap.o $(BUILD)/host/simple/team.o
+COUPLE_SIMPLE = $(patsubst %,$(BUILD)/host/simple/%.o,contact_list find_contacts triangle_contacts heap team)
 COUPLE_MESH_OBJECTS = $(COUPLE_MESH:%.c=$(BUILD)/couple/%.o)
 COUPLE_MESH_LIB     = $(BUILD)/couple/libmesh_walls.a
 COUPLE_LIBS    = $(BUILD)/couple/libfibrad_couple.a $(BUILD)/libfibrad.a

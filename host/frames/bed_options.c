@@ -46,9 +46,7 @@ static int add_file(struct bed_options *options, const char *name) {
 }
 
 /* Orders names by the numbers in them: bed.200.dump stands before bed.1000.dump. */
-static int order_of_names(const void *a, const void *b) {
-    return strverscmp(*(char *const *)a, *(char *const *)b);
-}
+static int order_of_names(const void *a, const void *b) { return strverscmp(*(char *const *)a, *(char *const *)b); }
 
 /* Takes the name of a file, or a pattern in quotes that the shell has not expanded. */
 int bed_files_option(const char *name, void *options) {

@@ -4,9 +4,9 @@
 #include "cli/message.h"
 #include "heat/heat.h"
 
-/* Default numbers of directions. _BEGIN: with --error. _BRIGHT: if the mean emissivity is at most BRIGHT and there are
- * at most PATCHES_BRIGHT patches. Patches then err more than so few directions do. With still fewer directions all
- * beams would be kept instead of half of them. _DARK: otherwise. Source: docs/heat.md, Settings. */
+/* Default numbers of directions. _BEGIN: the least with --error. _BRIGHT: if the mean emissivity is at most BRIGHT and
+ * there are at most PATCHES_BRIGHT patches. Patches then err more than so few directions do. With still fewer
+ * directions all beams would be kept instead of half of them. _DARK: otherwise. Source: docs/heat.md, Settings. */
 enum {
     DIRECTIONS_BEGIN = 72,
     DIRECTIONS_DARK = FIBRAD_HEAT_DIRECTIONS_DEFAULT,
@@ -14,6 +14,13 @@ enum {
     PATCHES_BRIGHT = FIBRAD_HEAT_PATCHES_DEFAULT
 };
 #define BRIGHT 0.35
+
+/* The number of directions to begin with for --error E. Most beds need about 1/E, so that many suffice at once. From
+ * ERROR_SMALL down, DIRECTIONS_BEGIN tell what is needed: they are then a small part of it. */
+#define ERROR_SMALL .006
+static uint32_t directions_to_begin(double error) {
+    return error < ERROR_SMALL ? DIRECTIONS_BEGIN : (uint32_t)fmax(DIRECTIONS_BEGIN, 1 / error);
+}
 #define POINTS 64
 
 /* Least number of rays between walls if a wall is insulated, for each patch of a sphere. Patches of insulated walls
@@ -32,7 +39,7 @@ static fibrad_heat_config fill_config(const struct heat *h, bool refined, bool i
     }
     const bool bright = sum <= BRIGHT * areas && config.patches <= PATCHES_BRIGHT;
     if (!config.directions)
-        config.directions = refined ? DIRECTIONS_BEGIN : bright ? DIRECTIONS_BRIGHT : DIRECTIONS_DARK;
+        config.directions = refined ? directions_to_begin(h->error) : bright ? DIRECTIONS_BRIGHT : DIRECTIONS_DARK;
     if (!config.points) config.points = POINTS;
     if (!config.wall_rays && insulated)
         config.wall_rays = RAYS_INSULATED * (config.patches ? config.patches : FIBRAD_HEAT_PATCHES_DEFAULT);
@@ -68,15 +75,25 @@ static double worst_of(const struct excess *over) {
 #define PATCHES_MOST 0.92 /* most of the allowed error that patches may have; else beams would have to be exact */
 enum { GROWTH = 8 };
 
-/* Multiplies the number of directions, by 1.5 to `most`, up to the largest number there may be. */
+/* Multiplies the number of directions, by 1.5 to `most`, up to the largest number there may be. The estimates scatter,
+ * so it takes some more than they say: a further round costs more. */
+#define SPARE 1.1
 static void add_beams(fibrad_heat_config *config, double times, double most) {
-    config->directions = (uint32_t)fmin(config->directions * fmin(fmax(times, 1.5), most), FIBRAD_DIRECTIONS_MAX);
+    const double wanted = fmin(fmax(SPARE * times, 1.5), most);
+    config->directions = (uint32_t)fmin(config->directions * wanted, FIBRAD_DIRECTIONS_MAX);
 }
 
-/* Four times the patches need four times the beams, so that each patch keeps its number of beams. */
-static void add_patches(fibrad_heat_config *config) {
+/* The part of the error of patches that is left of four times the patches. */
+#define PATCHES_LEFT 0.5
+
+/* The part of the allowed error that beams may have beside patches. */
+static double beams_beside(double patches) { return sqrt(1 - pow(fmin(patches, PATCHES_MOST), 2)); }
+
+/* Four times the patches need four times the beams, so that each patch keeps its number of beams, and more if beams
+ * err too much as well. */
+static void add_patches(fibrad_heat_config *config, const struct excess *over) {
     config->patches *= 4;
-    add_beams(config, 4, GROWTH);
+    add_beams(config, fmax(4, over->beams / beams_beside(PATCHES_LEFT * over->patches)), GROWTH);
 }
 
 /* Rays between walls: the error falls as the square root of their number. */
@@ -92,16 +109,16 @@ static void add_wall_rays(fibrad_heat_config *config, double over, double most) 
 static fibrad_heat_config refine(fibrad_heat_config config, const struct excess *over, const struct excess *last,
                                  double most) {
     const bool finer = config.patches < FIBRAD_HEAT_PATCHES_MAX;
-    const double beams_allowed = sqrt(1 - pow(fmin(over->patches, PATCHES_MOST), 2));
+    const double beams_allowed = beams_beside(over->patches);
     if (over->walls > 1 && over->walls <= HELPED * last->walls) add_wall_rays(&config, over->walls, most);
     if (hypot(over->beams, over->patches) > 1) {
         if (over->patches > PATCHES_MOST && finer)
-            add_patches(&config);
+            add_patches(&config, over);
         else if (over->beams > beams_allowed)
             add_beams(&config, over->beams / beams_allowed, most);
     } else if (over->emission > 1) {
         if (over->emission > HELPED * last->emission && finer)
-            add_patches(&config);
+            add_patches(&config, over);
         else
             add_beams(&config, over->emission, most);
     } else if (over->walls > HELPED * last->walls) {

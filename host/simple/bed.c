@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/contact_list.h"
+#include "simple/contact_list.h"
 
 int fibrad_bed_begin(fibrad_bed *bed) {
     if (!bed) return FIBRAD_E_ARGUMENT;

@@ -100,7 +100,8 @@ typedef enum fibrad_warning_code {
     FIBRAD_WARNING_STORE = 9,      /* sphere first stores value J/(m3 K), if L is the metre: no solid does */
     FIBRAD_WARNING_OPEN_ROWS = 10, /* sums of rows of walls are off by value */
     FIBRAD_WARNING_APART = 11,     /* rows of walls and of spheres disagreed by value before they were closed */
-    FIBRAD_WARNING_CHANGED_ROW = 12 /* closing has changed row first by value times its error */
+    FIBRAD_WARNING_CHANGED_ROW = 12 /* closing has changed row first by value times its error, above
+                                       1e-4 */
 } fibrad_warning_code;
 #define FIBRAD_WARNINGS_MAX 12
 

@@ -14,6 +14,7 @@
 #define CLOSED        1e-9  /* closed rows of walls add up to 1 within this */
 #define APART         0.1   /* sums of rows of walls may differ from 1 so much before closing; few directions: 0.01s */
 #define CHANGE_LARGE  1.5   /* change by closing over the error of a row; among thousands of rows chance makes 1 */
+#define CHANGE_LEAST  1e-4  /* a change of factors that is felt */
 #define STORE_LOW     300.0 /* [J/(m3 K)] a margin of 2 beyond all solids, from aerogel to uranium */
 #define STORE_HIGH    3e9
 #define PI            3.14159265358979323846
@@ -178,7 +179,7 @@ void fibrad_bed_warn_of_rows(fibrad_bed *bed, const fibrad_factors *matrix) {
         new_warning(bed, FIBRAD_WARNING_OPEN_ROWS, 0, matrix->wall_closure);
     else if (walls && matrix->wall_correction > APART)
         new_warning(bed, FIBRAD_WARNING_APART, 0, matrix->wall_correction);
-    else if (matrix->changed > CHANGE_LARGE)
+    else if (matrix->changed > CHANGE_LARGE && matrix->changed * matrix->error[matrix->changed_row] > CHANGE_LEAST)
         new_warning(bed, FIBRAD_WARNING_CHANGED_ROW, matrix->changed_row, matrix->changed);
 }
 

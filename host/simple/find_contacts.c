@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/contact_list.h"
+#include "simple/contact_list.h"
 #include "simple/cylinder.h"
 
 enum { CLASSES_MAX = 64 };

@@ -1,6 +1,6 @@
 /* contact_list.c - contacts that have been found, the spots at which they touch, and what they conduct.
  * SPDX-License-Identifier: MIT */
-#include "contact/contact_list.h"
+#include "simple/contact_list.h"
 
 #include <math.h>
 #include <stdbool.h>

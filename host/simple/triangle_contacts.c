@@ -7,7 +7,7 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "contact/contact_list.h"
+#include "simple/contact_list.h"
 
 #define BESIDE 0.9
 
