@@ -2,8 +2,8 @@
 """write_structures.py [--check] HEADER...
 
 Reads the public headers. The last one is that of the simple layer. Writes its functions, those in ALSO, and the
-structures that they take: the whole of _structures.py, and all but the head of fibrad.f90. --check compares instead, and fails
-where something would be written."""
+structures that they take: the whole of _structures.py, and all but the head of fibrad.f90. --check compares instead,
+and fails where something would be written."""
 import itertools
 import pathlib
 import re
@@ -13,7 +13,8 @@ import textwrap
 PYTHON = pathlib.Path("host/python/fibrad/_structures.py")
 FORTRAN = pathlib.Path("host/fortran/fibrad.f90")
 BEGIN, END = "    ! ---- of C, by `make structures`\n", "    ! ---- end of what `make structures` writes\n"
-ALSO = ["fibrad_version", "fibrad_status_text", "fibrad_why_text", "fibrad_node_emissivity", "fibrad_heat_sources_init"]
+ALSO = ["fibrad_version", "fibrad_status_text", "fibrad_why_text", "fibrad_node_emissivity",
+        "fibrad_heat_sources_init"]
 NUMBERS = {"double": ("c_double", "real(c_double)"), "int": ("c_int", "integer(c_int)"),
            "uint32_t": ("c_uint32", "integer(c_int32_t)"), "uint64_t": ("c_uint64", "integer(c_int64_t)"),
            "size_t": ("c_size_t", "integer(c_size_t)"), "uchar": ("c_ubyte", "integer(c_signed_char)")}

@@ -74,7 +74,7 @@ def test_temperatures_of_triangles():
         assert np.allclose(several.spheres, single.spheres, rtol=5e-3)
         assert np.allclose(single.triangle_temperatures["tub"][:, 0], given, rtol=1e-12)
         assert single.wall_temperatures["tub"] == pytest.approx(np.mean(given**4)**0.25, rel=1e-9)
-        for wrong, text in ((given[1:], "a number or 12"), (-given, "triangle 0 of tub is -300"),
+        for wrong, text in ((given[1:], "or 12, one for each"), (-given, "triangle 0 of tub is -300"),
                             (np.where(given > 700, np.nan, given), "triangle 10 of tub is nan")):
             with pytest.raises(fibrad.InputError, match=text):
                 tub.solve(**STATE, walls=[fibrad.wall(one, name="tub", temperature=wrong)])

@@ -29,6 +29,6 @@ from ._scene import Mesh
 from ._walls import wall
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Absorbed", "Advance", "Bed", "Cancelled", "Contacts", "Error", "Factors", "FileError", "FileFrame", "InputError",
-           "Light", "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "exchange_factors", "read",
+__all__ = ["Absorbed", "Advance", "Bed", "Cancelled", "Contacts", "Error", "Factors", "FileError", "FileFrame",
+           "InputError", "Light", "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "exchange_factors", "read",
            "view_factors", "wall"]

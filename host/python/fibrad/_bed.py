@@ -210,8 +210,8 @@ class Bed:
             vanish with the result. Changes no bit. Default: in memory.
         """
         values = {"directions": directions, "rays": rays, "paths": paths, "seed": seed}
-        rule = Rule(self._packing, self._container, method, emissivity, k_star, values, tolerance, cutoff, wanted, raw, drop,
-                    scratch)
+        rule = Rule(self._packing, self._container, method, emissivity, k_star, values, tolerance, cutoff, wanted, raw,
+                    drop, scratch)
         owner = Owner()
         self._use(library.fibrad_bed_factors, rule.c, ctypes.byref(owner.factors))
         factors = take_factors(owner, self._container.names, self._packing.ids, rule.nodes)
@@ -221,7 +221,8 @@ class Bed:
                  "directions or paths are possible")
         return factors
 
-    def beams(self, *, directions: Optional[int] = None, points: Optional[int] = None, patches: Optional[int] = None) -> None:
+    def beams(self, *, directions: Optional[int] = None, points: Optional[int] = None,
+              patches: Optional[int] = None) -> None:
         """How finely `solve`, `shine` and `advance` resolve heat from now on. Traces the beams.
 
         Parameters
@@ -291,11 +292,10 @@ class Bed:
                                wall_absorptivity=pointer(of_walls))
         result = LightResult(**{name: pointer(values) for name, values in arrays.items()})
         self._use(library.fibrad_bed_shine, sources, result)
-        walls = {name: dict(zip(container.names, arrays[name].tolist())) for name in ("wall_absorbed", "wall_absorbed_first")}
+        walls, first = (dict(zip(container.names, arrays[name].tolist())) for name in ("wall_absorbed", "wall_absorbed_first"))
         return Absorbed(spheres=arrays["absorbed"], first=arrays["absorbed_first"], errors=arrays["absorbed_error"],
-                        walls=walls["wall_absorbed"], walls_first=walls["wall_absorbed_first"], incident=result.incident,
-                        transmitted=result.transmitted, reflected=result.reflected, error=result.error,
-                        _patches=result.patches, _of=self)
+                        walls=walls, walls_first=first, incident=result.incident, transmitted=result.transmitted,
+                        reflected=result.reflected, error=result.error, _patches=result.patches, _of=self)
 
     def solve(self, temperature: Optional[ArrayLike], emissivity: Emissivity, *, power: Optional[ArrayLike] = None,
               surroundings: Optional[float] = None, walls: Optional[Walls] = None, tolerance: Optional[float] = None,
@@ -371,7 +371,8 @@ class Bed:
         return Powers(spheres=of_spheres["power"], walls=by_name["wall_power"], surroundings=result.surroundings_power,
                       temperatures=of_spheres["temperature"], wall_temperatures=by_name["wall_temperature"],
                       triangle_fluxes=container.by_mesh(sides[0]), triangle_temperatures=container.by_mesh(sides[1]),
-                      emissivities=sources.emissivity, errors=of_spheres["power_error"], wall_errors=by_name["wall_error"],
+                      emissivities=sources.emissivity, errors=of_spheres["power_error"],
+                      wall_errors=by_name["wall_error"],
                       surroundings_error=result.surroundings_error, temperature_errors=of_spheres["temperature_error"],
                       least_temperatures=of_spheres["least_temperature"],
                       largest_temperatures=of_spheres["largest_temperature"],
@@ -389,9 +390,9 @@ class Bed:
 
     def advance(self, temperature: ArrayLike, duration: float, *, capacity: ArrayLike, emissivity: Emissivity,
                 power: Optional[ArrayLike] = None, surroundings: Optional[float] = None,
-                surroundings_end: Optional[float] = None, walls: Optional[Walls] = None, walls_end: Optional[Walls] = None,
-                step: Optional[float] = None, tolerance: Optional[float] = None, sigma: float = STEFAN_BOLTZMANN,
-                conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Advance:
+                surroundings_end: Optional[float] = None, walls: Optional[Walls] = None,
+                walls_end: Optional[Walls] = None, step: Optional[float] = None, tolerance: Optional[float] = None,
+                sigma: float = STEFAN_BOLTZMANN, conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Advance:
         """Temperatures after a span of time: capacity dT/dt = power + net power. Steps are implicit and of second order.
         They keep the energy. Small spheres among large ones do not limit the step.
 
@@ -423,7 +424,7 @@ class Bed:
         sources = Sources(packing, container, given, surroundings, sigma, None, contacts, conductivity)
         end, sides = container.temperatures(container.with_values(walls_end, given))
         if not np.array_equal(np.isnan(end), np.isnan(sources.wall_temperature)) or not sources.has_sides(sides):
-            raise refuse("walls_end: the temperatures of walls can change, but neither those of triangles nor what is given")
+            raise refuse("walls_end: only the temperatures of walls can change, and not those of single triangles")
         powers = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, packing.names)
         sources.set_power(powers)
         law = sources.set_emissivity(emissivity, now, self._call)

@@ -61,7 +61,8 @@ class Call:
             return otherwise
 
     def _report(self, context: Any, stage: bytes, done: int, total: int) -> int:
-        if self._progress and self.guarded(lambda: self._progress and self._progress(stage.decode(), done, total), False):
+        progress = self._progress
+        if progress and self.guarded(lambda: progress(stage.decode(), done, total), False):
             self._raised = Cancelled(status_text(CANCELLED), CANCELLED)
         return self._raised is not None
 

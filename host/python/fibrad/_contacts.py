@@ -68,15 +68,15 @@ def add_contacts(sources: HeatSources, joined: Contacts) -> None:
     sources.contact_first, sources.contact_second = pointer(joined.first, WHOLE), pointer(joined.second, WHOLE)
 
 
-def rule_of(spots: Optional[str], conductivity: Optional[ArrayLike], scale: Optional[float], gas_gap: float, gas_jump: float,
-            gas_alone: bool, gas: bool) -> ContactRule:
+def rule_of(spots: Optional[str], conductivity: Optional[ArrayLike], scale: Optional[float], gas_gap: float,
+            gas_jump: float, gas_alone: bool, gas: bool) -> ContactRule:
     if spots not in _SPOTS:
         raise refuse(f"spots is {spots!r}; 'lens', 'hertz' or None are wanted")
     if conductivity is None and not (spots is None and gas_alone):
         raise refuse("conductivity is missing")
     return ContactRule(spots=_SPOTS[spots], scale=real("scale", scale, 0, 1e6), gas_least=4e-10,
-                       gas_reach=real("gas_gap", gas_gap, 0, 1) if gas else 0.0, gas_jump=real("gas_jump", gas_jump, 0, 1),
-                       gas_alone=bool(gas_alone))
+                       gas_reach=real("gas_gap", gas_gap, 0, 1) if gas else 0.0,
+                       gas_jump=real("gas_jump", gas_jump, 0, 1), gas_alone=bool(gas_alone))
 
 
 def take_contacts(found: Any, rule: ContactRule, conductivity: Optional[ArrayLike], gas_conductivity: Optional[float],

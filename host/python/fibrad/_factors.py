@@ -259,12 +259,14 @@ class Rule:
             rays = whole("rays", values["rays"], 1, 2**32 - 1)
             self.c.cast = ctypes.pointer(CastRule(rays=rays, random=kind == "mc", seed=seed, cutoff=far))
 
-    def _grey(self, rule: Any, packing: Packing, container: Container, emissivity: Any, k_star: Optional[ArrayLike]) -> None:
+    def _grey(self, rule: Any, packing: Packing, container: Container, emissivity: Any,
+              k_star: Optional[ArrayLike]) -> None:
         self._emissivity = per_sphere("emissivity", emissivity, packing.n, 0, 1, packing.names)
         self._of_walls = container.emissivities(container.walls)
         rule.emissivity, rule.wall_emissivity = pointer(self._emissivity), pointer(self._of_walls)
         if k_star is None:
             return
         self._k_star = per_sphere("k_star", k_star, packing.n, RELATIVE_CONDUCTIVITY_MIN, np.inf, packing.names)
-        self.nodes = np.fromiter(map(library.fibrad_node_emissivity, self._emissivity, self._k_star), np.float64, packing.n)
+        nodes = map(library.fibrad_node_emissivity, self._emissivity, self._k_star)
+        self.nodes = np.fromiter(nodes, np.float64, packing.n)
         rule.conductivity, rule.node_emissivity = pointer(self._k_star), pointer(self.nodes)

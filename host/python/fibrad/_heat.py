@@ -166,8 +166,8 @@ class Advance:
 class Sources:
     """A fibrad_heat_sources, its arrays, and the law of emissivities."""
 
-    def __init__(self, packing: Packing, container: Container, walls: list[Wall], surroundings: Optional[float], sigma: float,
-                 tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike]):
+    def __init__(self, packing: Packing, container: Container, walls: list[Wall], surroundings: Optional[float],
+                 sigma: float, tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike]):
         n, names = packing.n, packing.names
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
@@ -224,7 +224,8 @@ class Sources:
                    wall_emissivity=pointer(self._wall_emissivity))
 
 
-def power_of(power: Optional[ArrayLike], kelvins: NDArray[np.float64], packing: Packing) -> Optional[NDArray[np.float64]]:
+def power_of(power: Optional[ArrayLike], kelvins: NDArray[np.float64],
+             packing: Packing) -> Optional[NDArray[np.float64]]:
     """[n] given powers. One number holds for all spheres of unknown temperature."""
     if power is None:
         return None

@@ -20,9 +20,10 @@ from ._values import doubles, real, refuse
 
 _PLANES = ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")  # 2 axis + upper
 _CYLINDERS = ("xcylinder", "ycylinder", "cylinder")  # by fibrad_wall.cylinder.along
-_OTHERS = {"zcylinder": "cylinder", **{f"{x}{end}": f"{x}{name}" for x in "xyz" for end, name in (("lo", "min"), ("hi", "max"))}}
+_OTHERS = {"zcylinder": "cylinder", **{x + end: x + name for x in "xyz" for end, name in (("lo", "min"), ("hi", "max"))}}
 _HEAT = ("temperature", "power", "insulated")  # a wall has one of these
 _VALUES = (*_HEAT, "emissivity", "absorptivity")
+_SIDES = ("auto", "normals", "both")
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
 _NO_WALL = 2**32 - 1
 
@@ -41,6 +42,9 @@ class Wall:
         """The same wall with other values."""
         kept = {key: value for key, value in self.values.items() if not (key in _HEAT and set(_HEAT) & set(values))}
         return dataclasses.replace(self, values={**kept, **values})
+
+    def share(self, key: str, otherwise: float) -> float:
+        return real(f"{key} of wall {self.name}", self.values.get(key, otherwise), 0, 1)
 
 
 Walls = Union[str, Wall, Iterable[Union[str, Wall]]]
@@ -77,34 +81,40 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
     scale, sides
         Of "mesh:FILE", as for `Mesh.from_stl`.
     """
-    word, _, rest = ("mesh", "", "") if isinstance(shape, Mesh) else str(shape).partition(":")
-    word = _OTHERS.get(word, word)
-    kind = "plane" if word in _PLANES else "cylinder" if word in _CYLINDERS else word if word in ("mesh", "box") else ""
+    kind, word, place = _shape(shape, name, (scale, sides))
     given = {"temperature": temperature, "power": power, "insulated": insulated or None, "emissivity": emissivity,
              "absorptivity": absorptivity}
     values = {key: value for key, value in given.items() if value is not None}
-    place: Any = at
-    if kind == "cylinder":
-        numbers = [real(f"wall {word}", part, -LENGTH_MAX, LENGTH_MAX) for part in rest.split(",")] if rest else []
-        u, v = "xyz".replace("xyz"[_CYLINDERS.index(word)], "")
-        if len(numbers) != 3 or not numbers[2] > 0:
-            raise refuse(f"wall {word} needs {word}:{u.upper()},{v.upper()},R, a place and a radius above 0")
-        place = tuple(numbers)
-    elif kind == "mesh":
-        place = shape if isinstance(shape, Mesh) else (rest, scale, sides)
-        word = name or re.sub(r"\W", "_", pathlib.Path(rest).stem)
-        if not word:
-            raise refuse("a Mesh needs a name, and mesh:FILE a file")
-    elif at is not None:
+    useless = [key for key, use in (("at", at is not None and kind != "plane"), ("open", open and kind != "plane"),
+                                    ("name", name is not None and kind != "mesh")) if use]
+    if useless:
+        raise refuse(f"wall {word}: {useless[0]} is of no use here")
+    several = ["open", *values] if open else [key for key in _HEAT if key in values]
+    if len(several) > 1:
+        raise refuse(f"wall {word}: {' and '.join(several)} exclude each other")
+    if at is not None:
         place = real(f"wall {word}: at", at, -LENGTH_MAX, LENGTH_MAX)
-    heat = [key for key in _HEAT if key in values]
-    if len(heat) > 1 or open and values:
-        raise refuse(f"wall {word}: {' and '.join(['open'] * open + list(values if open else heat))} exclude each other")
-    useless = [key for key, use in (("at", kind == "plane" or at is None), ("open", kind == "plane" or not open),
-                                    ("name", kind == "mesh" or name is None)) if not use]
-    if useless or rest and kind not in ("cylinder", "mesh"):
-        raise refuse(f"wall {word}: {(useless or [rest])[0]} is of no use here")
     return Wall(kind, word, place, open, values)
+
+
+def _shape(shape: Union[str, Mesh], name: Optional[str], of_file: tuple[float, str]) -> tuple[str, str, Any]:
+    """Kind, name and place of a wall. Of a mesh in a file the place is the file, its scale and its sides."""
+    word, _, rest = ("mesh", "", "") if isinstance(shape, Mesh) else str(shape).partition(":")
+    word = _OTHERS.get(word, word)
+    if word == "mesh":
+        called = name or re.sub(r"\W", "_", pathlib.Path(rest).stem)
+        if not called:
+            raise refuse("a Mesh needs a name, and mesh:FILE a file")
+        return "mesh", called, shape if isinstance(shape, Mesh) else (rest, *of_file)
+    if word in _CYLINDERS:
+        numbers = [real(f"wall {word}", part, -LENGTH_MAX, LENGTH_MAX) for part in rest.split(",") if part]
+        if len(numbers) != 3 or not numbers[2] > 0:
+            across = "XYZ".replace("XYZ"[_CYLINDERS.index(word)], "")
+            raise refuse(f"wall {word} needs {word}:{across[0]},{across[1]},R, a place and a radius above 0")
+        return "cylinder", word, tuple(numbers)
+    if rest:
+        raise refuse(f"wall {word}: {rest} is of no use here")
+    return "plane" if word in _PLANES else "box" if word == "box" else "", word, None
 
 
 def _of_words(text: str) -> Iterator[Wall]:
@@ -117,12 +127,15 @@ def _of_words(text: str) -> Iterator[Wall]:
         keys: dict[str, Any] = {}
         for word in words:
             key, equal, value = word.partition("=")
-            flag = key in ("open", "insulated", "auto", "normals", "both")
-            if bool(equal) == flag or key not in (*_VALUES, "at", "open", "name", "scale", "auto", "normals", "both"):
+            if equal and key in ("at", "name", "scale", *_VALUES) and key != "insulated":
+                keys[key] = value
+            elif not equal and key in ("open", "insulated"):
+                keys[key] = True
+            elif not equal and key in _SIDES:
+                keys["sides"] = key
+            else:
                 raise refuse(f"wall {shape}: {word!r} is of no use here; there are at=, open, temperature=, power=, insulated, "
-                             "emissivity=, absorptivity=, name=, scale=, normals, both")
-            keys["sides" if key in ("auto", "normals", "both") else key] = (
-                key if key in ("auto", "normals", "both") else value if equal else True)
+                             f"emissivity=, absorptivity=, name=, scale=, {', '.join(_SIDES)}")
         yield wall(shape, **keys)
 
 
@@ -130,7 +143,8 @@ def walls_of(walls: Any) -> list[Wall]:
     """The walls of an argument."""
     several = [walls] if isinstance(walls, (str, Wall)) else [] if walls is None else walls
     if not isinstance(several, Iterable) or isinstance(several, dict):
-        raise refuse(f"walls must be words such as 'zmin:temperature=1200', fibrad.wall, or several of these, not {walls!r}")
+        raise refuse("walls must be words such as 'zmin:temperature=1200', fibrad.wall, or several of these, not "
+                     f"{walls!r}")
     found: list[Wall] = []
     for one in several:
         if not isinstance(one, (str, Wall)):
@@ -221,8 +235,8 @@ class Container:
             [np.full(len(mesh.triangles), b) for b, mesh in self._meshes],
             [np.full(len(mesh.triangles), self._back_of(b, mesh)) for b, mesh in self._meshes])]
         self._arrays = [at, *numbers]
-        return Triangles(*(pointer(at[:, k]) for k in range(3)), 3, len(at), *(pointer(array, WHOLE) for array in numbers),
-                         len(numbers[1]))
+        return Triangles(*(pointer(at[:, k]) for k in range(3)), 3, len(at),
+                         *(pointer(array, WHOLE) for array in numbers), len(numbers[1]))
 
     # ---- values of walls
 
@@ -244,17 +258,16 @@ class Container:
 
     def emissivities(self, walls: list[Wall]) -> NDArray[np.float64]:
         """[walls]"""
-        return np.array([real(f"emissivity of wall {one.name}", one.values.get("emissivity", 1.0), 0, 1) for one in walls])
+        return np.array([one.share("emissivity", 1.0) for one in walls])
 
     def absorptivities(self, walls: list[Wall]) -> NDArray[np.float64]:
         """[walls]"""
-        given = [one.values.get("absorptivity", one.values.get("emissivity", 1.0)) for one in walls]
-        return np.array([real(f"absorptivity of wall {one.name}", a, 0, 1) for one, a in zip(walls, given)])
+        return np.array([one.share("absorptivity", one.share("emissivity", 1.0)) for one in walls])
 
     def temperatures(self, walls: list[Wall]) -> tuple[NDArray[np.float64], Optional[NDArray[np.float64]]]:
-        """[walls] temperatures, NaN where they are to be found. And those of the sides of triangles, [2 t], NaN for walls of
-        one temperature; None if all walls are such. The temperature of a wall with an array is the fourth root of the mean
-        fourth power by area."""
+        """[walls] temperatures, NaN where they are to be found. And those of the sides of triangles, [2 t], NaN for walls
+        of one temperature; None if all walls are such. The temperature of a wall with an array is the fourth root of the
+        mean fourth power by area."""
         kelvins = np.full(len(walls), math.nan)
         parts = [np.full((len(mesh.triangles), 2), math.nan) for _, mesh in self._meshes]
         part_of = {b: part for (b, _), part in zip(self._meshes, parts)}
@@ -269,8 +282,8 @@ class Container:
                 continue
             array, count = doubles(name, given), len(part_of.get(b, ()))
             if array.shape != (count,):
-                raise refuse(f"{name} has the shape {array.shape}; a number" + f" or {count}, one for each triangle," * (count > 0)
-                             + " is wanted")
+                raise refuse(f"{name} has the shape {array.shape}; a number is wanted"
+                             + f", or {count}, one for each triangle" * (count > 0))
             wrong = np.flatnonzero(~((array >= 0) & (array <= TEMPERATURE_MAX)))
             if wrong.size:
                 raise refuse(f"temperature of triangle {wrong[0]} of {one.name} is {array[wrong[0]]}")
@@ -283,9 +296,11 @@ class Container:
 
     def powers(self, walls: list[Wall]) -> Optional[NDArray[np.float64]]:
         """[walls] powers that walls give off, NaN where none is given. None: no wall has one."""
-        given = [real(f"power of wall {one.name}", one.values["power"], -POWER_MAX, POWER_MAX) if "power" in one.values
-                 else math.nan for one in walls]
-        return np.array(given) if not np.isnan(given).all() else None
+        given = [one.values.get("power") for one in walls]
+        if given == [None] * len(walls):
+            return None
+        return np.array([math.nan if power is None else real(f"power of wall {one.name}", power, -POWER_MAX, POWER_MAX)
+                         for one, power in zip(walls, given)])
 
     def by_mesh(self, values: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
         """Values [2 t] of all sides as (t, 2) for each mesh, by the name of the wall."""
@@ -330,7 +345,8 @@ class Container:
             text = ("a sphere reaches beyond an open side" if self.opened and not image else
                     "the box is smaller than a sphere's radius along a periodic axis")
         elif status == ENDLESS:
-            missing = [name for k, name in enumerate(_PLANES) if not self._bounded(k // 2) and name not in {*self.names, *self.opened}]
+            missing = [name for k, name in enumerate(_PLANES)
+                       if not self._bounded(k // 2) and name not in {*self.names, *self.opened}]
             text = f"{text}, such as walls='{missing[-1] if missing else 'zmax'}:open'"
         elif status == ARGUMENT and not concerned and not self._triangle(fault.triangle):
             text = f"this bed, box and walls cannot be computed: {text}"

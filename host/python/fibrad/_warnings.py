@@ -15,21 +15,24 @@ _RADIUS_LARGE = 0.1  # [m] particles hardly have a larger mean radius
 PLACES, SOURCES, ROWS = range(1, 5), range(5, 10), range(10, 13)  # of fibrad_warning_code
 _TEXTS = {
     1: "{first} and {second} overlap by {value:.3g} of a radius, so their view factors err by about {other:.1g}",
-    2: "{first} reaches through the wall {wall} by {value:.2g} of its radius ({count} such cases in all); is the wall in the "
-       "right place?",
-    3: "the wall {wall} is {value:.3g} long, the bed {other:.3g}; is the mesh in the unit of the bed? scale={scale} scales it",
-    4: "the wall {wall} lies from {value:g} to {other:g} along {axis}, away from the bed; are both in the same place and unit?",
+    2: "{first} reaches through the wall {wall} by {value:.2g} of its radius ({count} such cases in all); is the wall in "
+       "the right place?",
+    3: "the wall {wall} is {value:.3g} long, the bed {other:.3g}; is the mesh in the unit of the bed? scale={scale} "
+       "scales it",
+    4: "the wall {wall} lies from {value:g} to {other:g} along {axis}, away from the bed; are both in the same place and "
+       "unit?",
     5: "no sphere is warmer than {value:g} K; temperatures are in kelvins, 273.15 more than degrees Celsius",
     6: "{first} has 0 K ({count} spheres in all), others have up to {value:g} K; is a value missing? NaN stands for an "
        "unknown temperature",
     7: "{wall}: {value:g} K; temperatures are in kelvins, 273.15 more than degrees Celsius",
-    8: "{first}: its surface comes out at {value:.0f} K in one place; conductivity is for surfaces whose temperature differs "
-       "little from its mean",
+    8: "{first}: its surface comes out at {value:.0f} K in one place; conductivity is for surfaces whose temperature "
+       "differs little from its mean",
     9: "the capacity of {first} is {value:.3g} J/K for each m3; solids have some 1e5 to 5e6",
-    10: "rows of walls are not closed: their sums are off by {value:.2g}, because they contradict the rows of spheres{asked}",
+    10: "rows of walls are not closed: their sums are off by {value:.2g}, because they contradict the rows of "
+        "spheres{asked}",
     11: "rows of walls and of spheres disagreed by {value:.2g} before they were closed{asked}; more directions help",
-    12: "rows were scaled to add up to 1; this changes what {first} gives to walls and surroundings by {value:.2g} times the "
-        "error of its row{asked}; more directions help"}
+    12: "rows were scaled to add up to 1; this changes what {first} gives to walls and surroundings by {value:.2g} times "
+        "the error of its row{asked}; more directions help"}
 
 _HERE = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
