@@ -91,6 +91,7 @@ class Bed:
         self._container = Container(box, walls, self._packing)
         self._call = Call(threads, progress)
         self._busy = threading.Lock()
+        self._told = False  # of metres
         self._handle = ctypes.c_void_p()
         self._free = weakref.finalize(self, _free, self._handle)
         status = self._call(library.fibrad_bed_new, self._handle, self._container.config, self._packing.spheres,
@@ -384,7 +385,9 @@ class Bed:
 
     def _warn_of_units(self, surroundings: Optional[float], *kelvins: NDArray[np.float64]) -> None:
         """What the library cannot know: that lengths are metres, and which temperatures were given."""
-        warn_metres(self._packing)
+        if not self._told:
+            warn_metres(self._packing)
+        self._told = True
         if surroundings is not None and self._container.closed() and not all(np.isnan(given).all() for given in kelvins):
             warn("surroundings has no effect: nothing leaves a bed that walls and periods close")
 
