@@ -307,7 +307,7 @@ bench: $(BENCH_PROGRAMS) bench-peers bench-counted
 	    test -x $$b || continue; echo "$$b > $$b.csv"; $(BENCH_ENV) $$b > $$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/bench_beam.csv'; peer='$(BUILD)/bench/bench_embree.csv'; \
 	    out='docs/figures/beam_error.svg'" bench/plot_beam.gp
-	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='docs/figures/scale.svg'" bench/plot_scale.gp
+	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='$(BUILD)/bench/scale.svg'" bench/plot_scale.gp
 
 ## bench-quick: build all benches and run the smallest case of each, to see that they work
 bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted

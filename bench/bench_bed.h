@@ -8,6 +8,7 @@
 
 #include "bed/bed.h"
 #include "bench.h"
+#include "fibrad_surface.h"
 #include "simple/fibrad_host.h"
 
 static inline fibrad_spheres bench_spheres(const struct bed *bed) {

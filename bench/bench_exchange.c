@@ -158,7 +158,8 @@ static void measure_rows(const struct bench *bench, const struct bed *bed, doubl
     fibrad_run run = {.threads = 2};
     fibrad_bed_matrix *factors;
     double error = 0, size = 0, estimate = 0;
-    bench_check("factors", exchange_of(&config, &spheres, &rule, NULL, &run, &factors));
+    bench_check("factors",
+                fibrad_view_factors(&config, &spheres, &(fibrad_bed_rule){.exchange = &rule}, &run, &factors));
     for (uint32_t k = 0; k < ROWS; ++k) {
         const uint32_t i = target(bench, k);
         const double *truth = bench->truth + (size_t)k * bench->n;

@@ -13,8 +13,8 @@
  * square of the powers, against 384 patches and 400 directions of 128 points. It is taken over the first field, the
  * last field and two fields in between.
  *
- * Lines `patches` are by fibrad_radiation with so many patches, directions and points. Lines `factors` are powers by D,
- * with the tolerance of its rows. Lines `corrected` are as in fibrad_transient: D of tolerance 0.03, corrected by the
+ * Lines `patches` are by fibrad_bed with so many patches, directions and points. Lines `factors` are powers by D,
+ * with the tolerance of its rows. Lines `corrected` are as in fibrad_bed_advance: D of tolerance 0.03, corrected by the
  * default patches. The correction is computed anew when powers by D have changed by a tenth. */
 #include "bed/packing.h"
 #include "bench_bed.h"
@@ -56,26 +56,27 @@ static void compare(struct powers *p, int field) {
         }
 }
 
-static void solve_patches(struct powers *p, fibrad_bed *radiation, double *power) {
+static void solve_patches(struct powers *p, fibrad_bed *made, double *power) {
     const fibrad_heat_sources sources = {
         .temperature = p->temperature, .emissivity = p->emissivity, .surroundings = SKY, .sigma = SIGMA};
-    bench_check("solve", fibrad_bed_solve(radiation, &sources, NULL, &(fibrad_heat_result){.power = power}));
+    bench_check("solve", fibrad_bed_solve(made, &sources, NULL, &(fibrad_heat_result){.power = power}));
 }
 
 static fibrad_bed *trace_patches(struct powers *p, const fibrad_heat_config *heat) {
-    fibrad_bed *radiation;
+    fibrad_bed *made;
     fibrad_run run = {.threads = 1};
-    bench_check("radiation", made_with(&radiation, &p->config, &p->spheres, heat, &run));
-    return radiation;
+    bench_check("bed", fibrad_bed_new(&made, &p->config, &p->spheres, &run));
+    bench_check("beams", fibrad_bed_beams(made, heat));
+    return made;
 }
 
 static void find_truth(struct powers *p, const fibrad_heat_config *heat) {
-    fibrad_bed *radiation = trace_patches(p, heat);
+    fibrad_bed *made = trace_patches(p, heat);
     for (int c = 0; c < CHECKS; c++) {
         set_field(p, field_of_check(p, c));
-        solve_patches(p, radiation, p->truth[c]);
+        solve_patches(p, made, p->truth[c]);
     }
-    fibrad_bed_free(radiation);
+    fibrad_bed_free(made);
 }
 
 static void print_costs(struct powers *p, const char *way, const char *setting, double one, double hundred,
@@ -87,7 +88,7 @@ static void print_costs(struct powers *p, const char *way, const char *setting, 
 }
 
 /* Moves the bed. Returns the seconds of the solution after the move. */
-static double move_patches(struct powers *p, fibrad_bed *radiation) {
+static double move_patches(struct powers *p, fibrad_bed *made) {
     double seconds = 0;
     for (int m = 0; m < MOVES; m++) {
         for (uint32_t i = 0; i < p->bed.n; i++) {
@@ -97,8 +98,8 @@ static double move_patches(struct powers *p, fibrad_bed *radiation) {
             p->bed.z[i] += far * (bed_make_random(11 + (uint64_t)m, 3 * (uint64_t)i + 2) - .5);
         }
         const double begun = bench_thread_seconds();
-        bench_check("move", fibrad_bed_move(radiation, &p->config, &p->spheres));
-        solve_patches(p, radiation, p->power);
+        bench_check("move", fibrad_bed_move(made, &p->config, &p->spheres));
+        solve_patches(p, made, p->power);
         seconds += bench_thread_seconds() - begun;
     }
     return seconds / MOVES;
@@ -110,20 +111,20 @@ static void bench_patches(struct powers *p, const fibrad_heat_config *heat) {
     double *place = bench_array(3 * (size_t)p->bed.n, sizeof *place), *const axis[] = {p->bed.x, p->bed.y, p->bed.z};
     const double begun = bench_thread_seconds();
     double one = 0;
-    fibrad_bed *radiation = trace_patches(p, heat);
+    fibrad_bed *made = trace_patches(p, heat);
     for (int field = 0; field < p->fields; field += EACH) {
         set_field(p, field);
-        solve_patches(p, radiation, p->power);
+        solve_patches(p, made, p->power);
         if (field == 0) one = bench_thread_seconds() - begun;
         compare(p, field);
     }
     const double hundred = one + EACH * (bench_thread_seconds() - begun - one);
     for (size_t k = 0; k < 3; k++) memcpy(place + k * p->bed.n, axis[k], bytes);
-    const double moved = move_patches(p, radiation);
+    const double moved = move_patches(p, made);
     for (size_t k = 0; k < 3; k++) memcpy(axis[k], place + k * p->bed.n, bytes);
     snprintf(setting, sizeof setting, "%u x %u x %u", heat->patches, heat->directions, heat->points);
     print_costs(p, "patches", setting, one, hundred, moved);
-    fibrad_bed_free(radiation);
+    fibrad_bed_free(made);
     free(place);
 }
 
@@ -131,7 +132,8 @@ static fibrad_bed_matrix *make_factors(struct powers *p, double tolerance) {
     const fibrad_exchange_rule rule = {.emissivity = p->emissivity, .tolerance = tolerance};
     fibrad_run run = {.threads = 1};
     fibrad_bed_matrix *factors;
-    bench_check("factors", exchange_of(&p->config, &p->spheres, &rule, NULL, &run, &factors));
+    bench_check("factors",
+                fibrad_view_factors(&p->config, &p->spheres, &(fibrad_bed_rule){.exchange = &rule}, &run, &factors));
     return factors;
 }
 
@@ -176,7 +178,7 @@ static void bench_corrected(struct powers *p) {
     const uint32_t n = p->bed.n;
     double *compared = bench_array(n, sizeof *compared), one = 0;
     const double begun = bench_thread_seconds();
-    fibrad_bed *radiation = trace_patches(p, NULL);
+    fibrad_bed *made = trace_patches(p, NULL);
     fibrad_bed_matrix *factors = make_factors(p, ROUGH);
     int solutions = 0;
     for (int field = 0; field < p->fields; field++) {
@@ -184,7 +186,7 @@ static void bench_corrected(struct powers *p) {
         powers_by_factors(p, &factors->matrix);
         if (field == 0 || gone(p, compared) > .1) {
             memcpy(compared, p->power, n * sizeof *compared);
-            solve_patches(p, radiation, p->change);
+            solve_patches(p, made, p->change);
             for (uint32_t i = 0; i < n; i++) p->change[i] -= p->power[i];
             solutions++;
         }
@@ -194,7 +196,7 @@ static void bench_corrected(struct powers *p) {
     }
     snprintf(setting, sizeof setting, "%d by patches", solutions);
     print_costs(p, "corrected", setting, one, bench_thread_seconds() - begun, one);
-    fibrad_bed_free(radiation);
+    fibrad_bed_free(made);
     fibrad_bed_matrix_free(factors);
     free(compared);
 }

@@ -49,14 +49,15 @@ static struct answer solve(const struct room *room, const fibrad_heat_config *co
     sources.wall_emissivity = room->emissivity + room->spheres;
     sources.surroundings = 0, sources.sigma = 1, sources.tolerance = 1e-6;
     fibrad_run run = {.threads = 1};
-    fibrad_bed *radiation;
+    fibrad_bed *made;
     struct answer answer = {.seconds = 0};
     const double begun = bench_thread_seconds();
     answer.result.power = answer.power, answer.result.wall_power = answer.power + room->spheres;
     answer.result.power_error = answer.error, answer.result.wall_error = answer.error + room->spheres;
-    bench_check("radiation", made_with(&radiation, &scene, &spheres, config, &run));
-    bench_check("solve", fibrad_bed_solve(radiation, &sources, NULL, &answer.result));
-    fibrad_bed_free(radiation);
+    bench_check("bed", fibrad_bed_new(&made, &scene, &spheres, &run));
+    bench_check("beams", fibrad_bed_beams(made, config));
+    bench_check("solve", fibrad_bed_solve(made, &sources, NULL, &answer.result));
+    fibrad_bed_free(made);
     answer.seconds = bench_thread_seconds() - begun;
     return answer;
 }

@@ -13,10 +13,8 @@ struct session {
     fibrad_run run;
     uint32_t reports; /* number of reports until progress asks to stop */
     double emissivity[SPHERES], wall_emissivity[WALLS];
-    fibrad_radiation *radiation;
-    fibrad_transient *transient;
-    bool solved, powers; /* there is a solution of this bed */
-    uint32_t asked;      /* number of calls of the law of emissivities */
+    fibrad_bed *made;
+    uint32_t asked; /* number of calls of the law of emissivities */
     uint8_t law;
 };
 
@@ -74,12 +72,10 @@ static void check_factors(const fibrad_bed_matrix *bed, const struct session *s,
     if (closed) REQUIRE(bed->reciprocity_error < 1e-12);
 }
 
-static int factors_of(struct session *s, const fibrad_exchange_rule *grey, const fibrad_bed_rule *options,
-                      fibrad_bed_matrix **bed) {
+static int factors_of(struct session *s, const fibrad_bed_rule *options, fibrad_bed_matrix **bed) {
     const fibrad_spheres *spheres = spheres_of(s);
     const fibrad_scene_config *config = &s->contents.config;
-    return grey != NULL ? CALL(fibrad_exchange_factors(config, spheres, grey, options, &s->run, bed))
-                        : CALL(fibrad_view_factors(config, spheres, options, &s->run, bed));
+    return CALL(fibrad_view_factors(config, spheres, options, &s->run, bed));
 }
 
 static void try_factors(struct session *s) {
@@ -89,7 +85,6 @@ static void try_factors(struct session *s) {
                                    .points = method == 1 ? 64 : 0,
                                    .cutoff = which == 1 ? coordinate() : 0,
                                    .tolerance = which == 2 ? .05 + share() : 0};
-    const fibrad_surface_rule surface = {.nodes = 8};
     const fibrad_cast_rule cast = {.rays = 1 + number() % 300, .seed = which};
     const fibrad_exchange_rule grey = {.emissivity = s->emissivity,
                                        .wall_emissivity = s->wall_emissivity,
@@ -98,46 +93,25 @@ static void try_factors(struct session *s) {
                                        .tolerance = which == 3 ? .2 + share() : 0};
     fibrad_bed_rule options = {.raw = byte() % 4 == 0, .walls = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
     if (method < 4) options.beam = &beam;
-    if (method == 4) options.surface = &surface;
+    if (method > 5 || which == 5) options.exchange = &grey; /* two, perhaps */
     if (method == 5) options.cast = &cast;
     if (which == 4) options.cast = &cast; /* two, perhaps */
     if (which > 240) options.wanted = wanted;
     if (which == 240) options.scratch = "/tmp";
     if (which == 239) options.scratch = "/nonexistent";
     for (uint32_t i = 0; i < SPHERES; i++) wanted[i] = which >> i % 4 & 1;
-    if (method == 4 && shortest < 1) return; /* many images */
     fibrad_bed_matrix *bed = (fibrad_bed_matrix *)s, *again;
-    const int status = factors_of(s, method > 5 ? &grey : NULL, &options, &bed);
+    const int status = factors_of(s, &options, &bed);
     REQUIRE((status == FIBRAD_OK) == (bed != NULL));
     if (status != FIBRAD_OK) return;
-    const bool closed = plain && !options.raw && options.wanted == NULL && method != 4 && method < 6;
+    const bool closed = plain && !options.raw && options.wanted == NULL && method < 6;
     check_factors(bed, s, closed);
     any_run(s);
-    if (s->reports == 0 && factors_of(s, method > 5 ? &grey : NULL, &options, &again) == FIBRAD_OK) {
+    if (s->reports == 0 && factors_of(s, &options, &again) == FIBRAD_OK) {
         REQUIRE(same(&bed->matrix, &again->matrix));
         fibrad_bed_matrix_free(again);
     }
     fibrad_bed_matrix_free(bed);
-}
-
-static void try_views(struct session *s) {
-    const fibrad_spheres *spheres = spheres_of(s);
-    fibrad_side_view view[2 * TRIANGLES];
-    const int status = CALL(fibrad_side_views(&s->contents.config, spheres, number() % 40, &s->run, view));
-    for (uint32_t k = 0; status == FIBRAD_OK && k < 2 * s->contents.triangles.n; k++) {
-        const double sum = view[k].spheres + view[k].walls + view[k].escaped;
-        REQUIRE(isnan(sum) || fabs(sum - 1) < 1e-12);
-    }
-}
-
-static void try_displacements(struct session *s) {
-    fibrad_displacement d[SPHERES];
-    fibrad_scene_facts facts;
-    const fibrad_displacement_rule grey = {
-        .emissivity = s->emissivity, .wall_emissivity = s->wall_emissivity, .paths = 1 + byte() % 32};
-    const int status = CALL(fibrad_displacements(&s->contents.config, spheres_of(s), &grey, NULL, &s->run, d, &facts));
-    for (uint32_t i = 0; status == FIBRAD_OK && i < s->contents.n; i++)
-        for (int axis = 0; axis < 3; axis++) REQUIRE(d[i].square[axis] >= 0 && isfinite(d[i].square[axis]));
 }
 
 /* ---- heat ------------------------------------------------------------------------------------------------------- */
@@ -213,69 +187,27 @@ static void law(void *context, const double *temperature, const double *wall_tem
         if (!isnan(wall_temperature[b])) wall_emissivity[b] = .2 + .6 / (1 + fabs(wall_temperature[b]));
 }
 
-static void try_radiation(struct session *s) {
+static void try_heat(struct session *s) {
     double power[SPHERES], temperature[SPHERES], wall_power[WALLS], wall_temperature[WALLS], flux[2 * TRIANGLES];
-    double power_error[SPHERES];
+    double power_error[SPHERES], emissivity[SPHERES], wall_emissivity[WALLS];
     fibrad_heat_result result = {.power = power,
                                  .temperature = temperature,
                                  .wall_power = wall_power,
                                  .wall_temperature = wall_temperature,
                                  .power_error = power_error};
+    fibrad_law follow = {law, s, emissivity, wall_emissivity};
     struct sources all;
-    int status;
-    if (has_many_images(&s->contents)) return;
-    if (s->radiation == NULL) {
-        const fibrad_heat_config config = any_heat_config();
-        if (config.directions > 64 || config.points > 256) return;
-        status = CALL(fibrad_radiation_new(&s->radiation, &s->contents.config, spheres_of(s), &config, &s->run));
-        REQUIRE((status == FIBRAD_OK) == (s->radiation != NULL));
-        s->solved = false;
-        if (status != FIBRAD_OK) return;
-    }
-    switch (byte() % 6) {
-    case 0:
-        move_some(s);
-        if (CALL(fibrad_radiation_move(s->radiation, &s->contents.config, spheres_of(s))) != FIBRAD_OK) {
-            fibrad_radiation_free(s->radiation);
-            s->radiation = NULL;
-        }
-        s->solved = false;
-        break;
-    case 1:
-        status = CALL(fibrad_radiation_sides(s->radiation, flux, NULL));
-        REQUIRE(status == (s->solved ? FIBRAD_OK : FIBRAD_E_STATE));
-        break;
-    case 2: {
-        double emissivity[SPHERES], wall_emissivity[WALLS];
-        memcpy(emissivity, s->emissivity, sizeof emissivity);
-        memcpy(wall_emissivity, s->wall_emissivity, sizeof wall_emissivity);
-        any_sources(s, &all, false, false);
-        s->law = byte(), s->asked = 0;
-        status =
-            CALL(fibrad_radiation_settle(s->radiation, &all.sources, law, s, emissivity, wall_emissivity, &result));
-        s->solved = status == FIBRAD_OK;
-        if (s->solved && all.usual) check_powers(s, &result);
-        for (uint32_t i = 0; i < s->contents.n && s->solved; i++) REQUIRE(emissivity[i] >= 0 && emissivity[i] <= 1);
-        if (status != FIBRAD_OK) { /* after an error the header promises nothing about the solution */
-            fibrad_radiation_free(s->radiation);
-            s->radiation = NULL;
-        }
-        break;
-    }
-    default:
-        any_sources(s, &all, byte() % 2, false);
-        status = CALL(fibrad_radiation_solve(s->radiation, &all.sources, &result));
-        if (status == FIBRAD_OK && all.usual) check_powers(s, &result);
-        for (uint32_t i = 0; i < s->contents.n && status == FIBRAD_OK; i++) REQUIRE(power_error[i] >= 0);
-        s->solved = status == FIBRAD_OK;
-        if (status != FIBRAD_OK) {
-            fibrad_radiation_free(s->radiation);
-            s->radiation = NULL;
-        }
-    }
-    fibrad_scene_facts facts;
-    fibrad_fault fault;
-    fibrad_radiation_describe(s->radiation, &facts, &fault);
+    const bool follows = byte() % 4 == 0;
+    memcpy(emissivity, s->emissivity, sizeof emissivity);
+    memcpy(wall_emissivity, s->wall_emissivity, sizeof wall_emissivity);
+    any_sources(s, &all, !follows && byte() % 2, false);
+    s->law = byte(), s->asked = 0;
+    const int status = CALL(fibrad_bed_solve(s->made, &all.sources, follows ? &follow : NULL, &result));
+    if (status != FIBRAD_OK) return;
+    if (all.usual) check_powers(s, &result);
+    for (uint32_t i = 0; i < s->contents.n; i++)
+        REQUIRE(power_error[i] >= 0 && (!follows || (emissivity[i] >= 0 && emissivity[i] <= 1)));
+    REQUIRE(fibrad_bed_sides(s->made, flux, NULL) == FIBRAD_OK);
 }
 
 /* ---- time ------------------------------------------------------------------------------------------------------- */
@@ -299,11 +231,12 @@ static void advance(struct session *s, struct sources *all) {
                         .wall_power = wall_power,
                         .wall_energy = wall_energy,
                         .context = s};
-    if (which > 240) span.law = law, s->law = which, s->asked = 0;
+    fibrad_law follow = {.follow = law, .context = s};
+    if (which > 240) span.law = &follow, s->law = which, s->asked = 0;
     if (which == 2 && !(span.step > .01)) span.step = .1;
     all->sources.tolerance = 1e-2, all->sources.sigma *= .01; /* few steps */
     if (which == 1 && span.duration > 10) span.duration = 10;
-    const int status = CALL(fibrad_transient_advance(s->transient, &all->sources, &span));
+    const int status = CALL(fibrad_bed_advance(s->made, &all->sources, &span));
     if (status != FIBRAD_OK) REQUIRE(memcmp(before, temperature, s->contents.n * sizeof *before) == 0);
     if (status != FIBRAD_OK) return;
     double stored = 0, given = span.surroundings_energy, size = fabs(given), sources = 0;
@@ -316,41 +249,49 @@ static void advance(struct session *s, struct sources *all) {
     if (all->usual) REQUIRE(fabs(stored + given - sources) <= 1e-8 * (size + fabs(sources)) + 1e-9);
 }
 
-static void try_transient(struct session *s) {
+static void try_contacts(struct session *s) {
+    const fibrad_contact_rule rule = {.spots = byte() % 4, .scale = byte() % 3, .gas_reach = byte() / 128.};
+    const fibrad_contact_list *list;
+    const int status = CALL(fibrad_bed_contacts(s->made, &rule, &list));
+    REQUIRE((status == FIBRAD_OK) == (list != NULL));
+    for (uint32_t k = 0; status == FIBRAD_OK && k < list->n; k++)
+        REQUIRE(list->first[k] < s->contents.n && list->second[k] < s->contents.n + s->contents.config.walls);
+}
+
+/* Calls of one object, in any order. */
+static void try_made(struct session *s) {
     struct sources all;
-    int status;
     if (has_many_images(&s->contents)) return;
-    if (s->transient == NULL) {
-        fibrad_transient_config config = {.method = byte() % 3, .heat = any_heat_config()};
-        config.exchange.directions = 8 + byte() % 8, config.exchange.paths = 1 + byte() % 16;
-        config.exchange.tolerance = .5;
-        if (config.heat.directions > 64 || config.heat.points > 256) return;
-        status = CALL(fibrad_transient_new(&s->transient, &s->contents.config, spheres_of(s), &config, &s->run));
-        REQUIRE((status == FIBRAD_OK) == (s->transient != NULL));
-        s->powers = false;
+    if (s->made == NULL) {
+        const int status = CALL(fibrad_bed_new(&s->made, &s->contents.config, spheres_of(s), &s->run));
+        REQUIRE((status == FIBRAD_OK) == (s->made != NULL));
         if (status != FIBRAD_OK) return;
     }
-    double power[SPHERES], wall_power[WALLS], flux[2 * TRIANGLES];
-    fibrad_heat_result result = {.power = power, .wall_power = wall_power};
-    switch (byte() % 5) {
+    switch (byte() % 6) {
     case 0:
         move_some(s);
-        status = CALL(fibrad_transient_move(s->transient, &s->contents.config, spheres_of(s)));
+        (void)CALL(fibrad_bed_move(s->made, &s->contents.config, spheres_of(s)));
         break;
-    case 1:
-        any_sources(s, &all, true, false);
-        status = CALL(fibrad_transient_powers(s->transient, &all.sources, &result));
-        if (status == FIBRAD_OK && all.usual) check_powers(s, &result);
+    case 1: {
+        const fibrad_heat_config config = any_heat_config();
+        if (config.directions <= 64 && config.points <= 256) (void)CALL(fibrad_bed_beams(s->made, &config));
         break;
+    }
     case 2:
-        status = CALL(fibrad_transient_sides(s->transient, flux, NULL));
-        break;
-    default:
         any_sources(s, &all, true, true);
         advance(s, &all);
+        break;
+    case 3:
+        try_contacts(s);
+        break;
+    default:
+        try_heat(s);
     }
     fibrad_scene_facts facts;
-    fibrad_transient_describe(s->transient, &facts, NULL);
+    fibrad_fault fault;
+    fibrad_warning warning[FIBRAD_WARNINGS_MAX];
+    fibrad_bed_describe(s->made, &facts, &fault);
+    REQUIRE(fibrad_bed_warnings(s->made, warning) <= FIBRAD_WARNINGS_MAX);
 }
 
 /* ---- a bed, and what there is to be done with it ---------------------------------------------------------------- */
@@ -362,26 +303,12 @@ static void try_bed(void) {
     for (uint32_t b = 0; b < WALLS; b++) s.wall_emissivity[b] = b == kind % 8u ? share() : .2 + .08 * b;
     for (int k = byte() % 12; k > 0 && plain; k--) {
         any_run(&s);
-        switch (byte() % 8) {
-        case 0:
-        case 1:
+        if (byte() % 4 == 0)
             try_factors(&s);
-            break;
-        case 2:
-            try_views(&s);
-            break;
-        case 3:
-            try_displacements(&s);
-            break;
-        case 4:
-            try_transient(&s);
-            break;
-        default:
-            try_radiation(&s);
-        }
+        else
+            try_made(&s);
     }
-    fibrad_radiation_free(s.radiation);
-    fibrad_transient_free(s.transient);
+    fibrad_bed_free(s.made);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
