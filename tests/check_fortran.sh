@@ -11,7 +11,7 @@ case $BUILD in /*) build=$BUILD ;; *) build=$PWD/$BUILD ;; esac
 awk '/^```fortran$/ { inside = 1; next } /^```/ { inside = 0 } inside' docs/embedding.md >"$work/page.f90"
 grep -q '^end program' "$work/page.f90"
 
-compile() { "$FC" -O2 -std=f2008 -Wall -Wextra -Werror -J "$work" "$@"; }
+compile() { "$FC" -O2 -std=f2018 -Wall -Wextra -Werror -J "$work" "$@"; }
 compile -c host/fortran/fibrad.f90 -o "$work/fibrad.o"
 for source in tests/fortran/test_fortran.f90 host/fortran/example.f90 "$work/page.f90"; do
     compile "$source" "$work/fibrad.o" -L"$build" -lfibrad -Wl,-rpath,"$build" -o "$work/program"

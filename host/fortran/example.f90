@@ -10,49 +10,57 @@ program example
     integer, parameter :: side = 6, n = side**3, steps = 10
     real(dp), parameter :: radius = 0.005_dp, step = 2, pi = acos(-1.0_dp)
     real(dp), parameter :: heat_capacity = 4 * pi / 3 * radius**3 * 2500 * 800 ! J/K, of a sphere
-    real(dp) :: position(n, 3), r(n), temperature(n), emissivity(n), power(n), floor_power(1), outside, lost, gained
-    integer :: i, status, fault(2)
-    type(fibrad_factors) :: factors
-    type(fibrad_heat) :: heat
+    real(dp), target :: position(n, 3), r(n) = radius, temperature(n) = 1200, emissivity(n) = 0.8_dp, power(n)
+    real(dp), target :: floor_temperature(1) = 350, floor_emissivity(1) = 0.9_dp, floor_power(1)
+    real(dp) :: gained = 0, lost
+    type(fibrad_wall), target :: floor(1)
+    type(fibrad_scene_config) :: config
+    type(fibrad_spheres) :: spheres
+    type(fibrad_heat_sources) :: sources
+    type(fibrad_heat_result) :: result
+    type(fibrad_bed_matrix), pointer :: factors
+    real(dp), pointer :: error(:)
+    type(c_ptr) :: bed, matrix
+    integer :: i
 
     do i = 0, n - 1
         position(i + 1, :) = 2.02_dp * radius * [mod(i, side), mod(i / side, side), i / side**2] + 1.01_dp * radius
     end do
-    r = radius
+    floor(1) = fibrad_wall(kind=fibrad_wall_plane, plane=fibrad_plane(axis=2, upper=0, at=0))
+    config = fibrad_scene_config(wall=c_loc(floor), walls=1)
+    spheres = fibrad_spheres(c_loc(position(1, 1)), c_loc(position(1, 2)), c_loc(position(1, 3)), c_loc(r), n)
+    call check(fibrad_bed_new(bed, config, spheres))
 
-    call fibrad_view_factors(position(:, 1), position(:, 2), position(:, 3), r, factors, status, &
-                             walls=[fibrad_plane('zmin', 0.0_dp)], directions=100, fault=fault)
-    call check('view factors')
-    print '(a, i0, a, es8.1)', 'view factors: ', size(factors%f), ' entries, error ', maxval(factors%error)
-    i = n / 2
-    print '(a, f9.6)', 'sum of a row: ', &
-        sum(factors%f(factors%start(i):factors%start(i + 1) - 1)) + factors%escaped(i) + sum(factors%wall(:, i))
+    call check(fibrad_bed_factors(bed, matrix=matrix))
+    call c_f_pointer(matrix, factors)
+    call c_f_pointer(factors%matrix%error, error, [n])
+    print '(a, i0, a, es8.1)', 'view factors along ', factors%directions, ' lines, error ', maxval(error)
+    call fibrad_bed_matrix_free(factors)
 
-    temperature = 1200
-    emissivity = 0.8_dp
-    gained = 0
-    call heat%new(position(:, 1), position(:, 2), position(:, 3), r, status, walls=[fibrad_plane('zmin', 0.0_dp)])
-    call check('heat')
+    call fibrad_heat_sources_init(sources)
+    sources%temperature = c_loc(temperature)
+    sources%emissivity = c_loc(emissivity)
+    sources%surroundings = 300
+    sources%wall_temperature = c_loc(floor_temperature)
+    sources%wall_emissivity = c_loc(floor_emissivity)
+    result = fibrad_heat_result(power=c_loc(power), wall_power=c_loc(floor_power))
     do i = 1, steps
-        call heat%solve(temperature, emissivity, 300.0_dp, power, status, wall_temperature=[350.0_dp], &
-                        wall_emissivity=[0.9_dp], wall_power=floor_power, surroundings_power=outside)
-        call check('powers')
+        call check(fibrad_bed_solve(bed, sources, result=result))
         temperature = temperature + step * power / heat_capacity
-        gained = gained + step * (outside + floor_power(1))
+        gained = gained + step * (result%surroundings_power + floor_power(1))
         position(:, 3) = position(:, 3) + 1e-5_dp ! the bed is lifted a little
-        call heat%move(position(:, 1), position(:, 2), position(:, 3), r, status, walls=[fibrad_plane('zmin', 0.0_dp)])
-        call check('move')
+        call check(fibrad_bed_move(bed, config, spheres))
     end do
-    call heat%free()
+    call fibrad_bed_free(bed)
     lost = heat_capacity * sum(1200 - temperature)
     print '(a, f0.6, a, f0.6, a)', 'lost by the spheres ', lost, ' J, gained by floor and surroundings ', gained, ' J'
     if (abs(lost - gained) > 1e-9_dp * lost) error stop 'energy is not kept'
 
 contains
-    subroutine check(what)
-        character(*), intent(in) :: what
+    subroutine check(status)
+        integer(c_int), intent(in) :: status
         if (status == fibrad_ok) return
-        print '(3a, 2(1x, i0))', what, ': ', fibrad_status_text(status), fault
+        print '(a)', fibrad_text(fibrad_status_text(status))
         error stop 1
     end subroutine check
 end program example

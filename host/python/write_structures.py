@@ -2,8 +2,8 @@
 """write_structures.py [--check] HEADER...
 
 Reads the public headers. The last one is that of the simple layer. Writes its functions, those in ALSO, and the
-structures that they take: the whole of _structures.py, and a block of fibrad.f90. --check compares instead, and fails
-where something would be written."""
+structures that they take: the whole of _structures.py, and all but the head of fibrad.f90. --check compares instead,
+and fails where something would be written."""
 import itertools
 import pathlib
 import re
@@ -13,11 +13,8 @@ import textwrap
 PYTHON = pathlib.Path("host/python/fibrad/_structures.py")
 FORTRAN = pathlib.Path("host/fortran/fibrad.f90")
 BEGIN, END = "    ! ---- of C, by `make structures`\n", "    ! ---- end of what `make structures` writes\n"
-ALSO = ["fibrad_version", "fibrad_status_text", "fibrad_why_text", "fibrad_node_emissivity"]
-PUBLIC = ["fibrad_wall", "fibrad_light"]  # of the Fortran module
-# What is not zero in Fortran by default. There flags are given where they are not wanted.
-DEFAULTS = {("fibrad_triangles", "stride"): "3", ("fibrad_fault", "triangle"): "-1", ("fibrad_bed_options", "walls"): "1",
-            ("fibrad_heat_sources", "sigma"): "fibrad_stefan_boltzmann"}
+ALSO = ["fibrad_version", "fibrad_status_text", "fibrad_why_text", "fibrad_node_emissivity",
+        "fibrad_heat_sources_init"]
 NUMBERS = {"double": ("c_double", "real(c_double)"), "int": ("c_int", "integer(c_int)"),
            "uint32_t": ("c_uint32", "integer(c_int32_t)"), "uint64_t": ("c_uint64", "integer(c_int64_t)"),
            "size_t": ("c_size_t", "integer(c_size_t)"), "uchar": ("c_ubyte", "integer(c_signed_char)")}
@@ -111,11 +108,7 @@ def python():
     yield "}\n"
 
 
-def fortran_name(name):
-    return name if name in PUBLIC else name.replace("fibrad_", "c_", 1)
-
-
-def fortran_field(name, field):
+def fortran_field(field):
     """The type and the name of a component, with its default."""
     kind, _, stars, own, length = field
     if kind in callbacks:
@@ -123,47 +116,43 @@ def fortran_field(name, field):
     if stars:
         return "type(c_ptr)", f"{own} = c_null_ptr"
     if kind in structures:
-        return f"type({fortran_name(kind)})", own
-    return NUMBERS[kind][1], f"{own}{f'({length})' if length else ''} = {DEFAULTS.get((name, own), '0')}"
+        return f"type({kind})", own
+    return NUMBERS[kind][1], f"{own}{f'({length})' if length else ''} = 0"
 
 
 def fortran_argument(said, argument):
-    kind, constant, stars, name, length = argument
-    if kind in callbacks:
-        return f"type(c_funptr), value :: {name}"
+    """An argument. One that is absent is NULL."""
+    kind, constant, stars, name, _ = argument
+    intent = f"intent({'in' if constant else 'inout'})"
     if kind == "char":
         return f"character(kind=c_char), intent(in) :: {name}(*)"
     if stars == 2:
         return f"type(c_ptr), intent(out) :: {name}"
     if stars and kind in structures:
         array = "(*)" if f"{name}[" in said else ""
-        return f"type({fortran_name(kind)}), intent({'in' if constant else 'inout'}) :: {name}{array}"
+        return f"type({kind}), {intent}, optional :: {name}{array}"
+    if stars and kind in NUMBERS:
+        return f"{NUMBERS[kind][1]}, {intent}, optional :: {name}(*)"
     return f"{'type(c_ptr)' if stars else NUMBERS[kind][1]}, value :: {name}"
 
 
 def fortran():
     for name, fields in structures.items():
-        own = fortran_name(name)
-        yield f"    type, bind(C){', public' if name in PUBLIC else ''} :: {own}\n"
-        for kind, group in itertools.groupby((fortran_field(name, field) for field in fields), lambda field: field[0]):
+        yield f"    type, bind(C) :: {name}\n"
+        for kind, group in itertools.groupby((fortran_field(field) for field in fields), lambda field: field[0]):
             yield wrapped(f"        {kind} :: ", [one for _, one in group], "", " &", 12)
-        yield f"    end type {own}\n\n"
+        yield f"    end type {name}\n\n"
     yield "    interface\n"
     for name, (said, result, arguments) in functions.items():
-        own, kind = fortran_name(name), "subroutine" if result[:3] == ("void", False, 0) else "function"
-        yield wrapped(f"        {kind} {own}(", [argument[3] for argument in arguments], f')~bind(C,~name="{name}")', " &", 12)
+        kind = "subroutine" if result[:3] == ("void", False, 0) else "function"
+        yield wrapped(f"        {kind} {name}(", [argument[3] for argument in arguments], ")~bind(C)", " &", 12)
         yield "            import\n"
         for argument in arguments:
             yield f"            {fortran_argument(said, argument)}\n"
         if kind == "function":
-            yield f"            {'type(c_ptr)' if result[2] else NUMBERS[result[0]][1]} :: {own}\n"
-        yield f"        end {kind} {own}\n"
-    yield "    end interface\n\n"
-    n = len(structures)
-    yield f"    character(24), parameter :: c_names({n}) = [character(24) :: &\n"
-    yield wrapped("        ", [f"'{name}'" for name in structures], "]", " &")
-    yield f"    integer, parameter :: c_bits({n}) = [ &\n"
-    yield wrapped("        ", [f"storage_size({fortran_name(name)}())" for name in structures], "]", " &")
+            yield f"            {'type(c_ptr)' if result[2] else NUMBERS[result[0]][1]} :: {name}\n"
+        yield f"        end {kind} {name}\n"
+    yield "    end interface\n"
 
 
 old = FORTRAN.read_text(encoding="utf-8")

@@ -21,18 +21,18 @@ static int print_factors(const fibrad_spheres *spheres) {
 /* A bed that falls apart and cools, per unit heat capacity. */
 static int cool(const fibrad_spheres *spheres, double *z, double *temperature, const double *emissivity) {
     double power[N];
-    fibrad_radiation *radiation;
+    fibrad_bed *bed;
     fibrad_heat_sources sources;
     fibrad_heat_result result = {.power = power};
     fibrad_heat_sources_init(&sources);
     sources.temperature = temperature, sources.emissivity = emissivity, sources.surroundings = 300;
-    int status = fibrad_radiation_new(&radiation, NULL, spheres, NULL, NULL);
+    int status = fibrad_bed_new(&bed, NULL, spheres, NULL);
     for (int step = 0; step < 10 && status == FIBRAD_OK; step++) {
-        status = fibrad_radiation_solve(radiation, &sources, &result);
+        status = fibrad_bed_solve(bed, &sources, NULL, &result);
         for (int i = 0; i < N; i++) temperature[i] += 1e-3 * power[i], z[i] *= 1.01;
-        if (status == FIBRAD_OK) status = fibrad_radiation_move(radiation, NULL, spheres);
+        if (status == FIBRAD_OK) status = fibrad_bed_move(bed, NULL, spheres);
     }
-    fibrad_radiation_free(radiation);
+    fibrad_bed_free(bed);
     return status;
 }
 

@@ -36,12 +36,12 @@ else
     echo "SKIP package in C++: no $CXX on this machine"
 fi
 
-# every structure that the headers define
-enums=$(sed -n 's/^typedef enum \(fibrad_[a-z_]*\) {.*/\1/p' "$tree/usr/include/fibrad.h" "$tree/usr/include/fibrad_light.h" "$tree/usr/include/fibrad_surface.h" \
-    "$tree/usr/include/fibrad_host.h")
-sed -n 's/^} \(fibrad_[a-z_]*\);.*/\1/p; s/^struct \(fibrad_[a-z_]*\) {.*/typedef struct \1 \1/p' "$tree/usr/include/fibrad.h" \
-    "$tree/usr/include/fibrad_heat.h" "$tree/usr/include/fibrad_light.h" "$tree/usr/include/fibrad_surface.h" \
-    "$tree/usr/include/fibrad_host.h" | sed 's/.* //' |
+# every structure that the headers define, but those of the papers
+headers=$(printf "%s " "$tree"/usr/include/fibrad.h "$tree"/usr/include/fibrad_[!sf]*.h)
+# shellcheck disable=SC2086  # a list of headers
+enums=$(sed -n 's/^typedef enum \(fibrad_[a-z_]*\) {.*/\1/p' $headers)
+# shellcheck disable=SC2086
+sed -n 's/^} \(fibrad_[a-z_]*\);.*/\1/p; s/^struct \(fibrad_[a-z_]*\) {.*/typedef struct \1 \1/p' $headers | sed 's/.* //' |
     grep -vx "$enums" | sed 's/.*/CHECK(&);/' >"$tree/structures.inc"
 test "$(wc -l <"$tree/structures.inc")" -gt 20
 build "$CC" sizes.c sizes "-std=c99 -I$tree" "$shared"

@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+CUBE = "xmin:at=-5,xmax:at=5,ymin:at=-5,ymax:at=5,zmin:at=-5,zmax:at=5"
+PAIR = [[0, 0, 0], [0, 0, 3]]
 TREE = pathlib.Path(__file__).resolve().parents[2]
 
 

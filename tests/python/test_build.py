@@ -106,7 +106,7 @@ def test_out_of_the_source_tree(backend, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("version_of, size, text", [
-    ("0.0.1", 0, "is of version 0.0.1, this package of"), (None, 4, "fibrad_plane has 4 bytes, this package has 16")])
+    ("0.0.1", 0, "is of version 0.0.1, this package of"), (None, 4, " has 4 bytes, this package has ")])
 def test_another_library_is_refused(version_of, size, text, version, tmp_path):
     source = LIKE % (version_of or version, size) + "".join(f"void {name}(void) {{}}\n" for name in FUNCTIONS
                                                            if f"{name}(" not in LIKE)

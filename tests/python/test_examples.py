@@ -22,7 +22,7 @@ def fixture_examples(tree):
 
 
 def test_docstrings():
-    for module in (fibrad, fibrad._heat):
+    for module in (fibrad, fibrad._bed, fibrad._light):
         found = doctest.testmod(module)
         assert found.attempted and not found.failed
 
@@ -116,14 +116,14 @@ def test_yade_runner_with_a_stand_in(small, examples):
     radiate = names["radiate"]
     state = radiate.__globals__
     radiate()
-    assert set(state["temperature"].values()) == {300.0} and state["heat"].n == small.n
-    first, scene.time = state["heat"], 1e-6
+    assert set(state["temperature"].values()) == {300.0} and state["bed"].n == small.n
+    first, scene.time = state["bed"], 1e-6
     radiate()
     stored = sum(0.01 * 800 * (t - 300) for t in state["temperature"].values())
-    assert state["absorbed"] == pytest.approx(stored, rel=1e-6) and state["absorbed"] > 0 and state["heat"] is first
+    assert state["absorbed"] == pytest.approx(stored, rel=1e-6) and state["absorbed"] > 0 and state["bed"] is first
     scene.bodies.pop()
     radiate()
-    assert state["heat"].n == small.n - 1
+    assert state["bed"].n == small.n - 1
 
 
 def test_yade_runner(examples, tmp_path):

@@ -99,10 +99,10 @@ def test_sides_as_the_program_has_them(tmp_path, program, turned):
     """However the file winds its triangles, the wall is where the sphere is: all that it emits arrives there."""
     path, bed = write_cube(tmp_path / "cube.stl", turned), tmp_path / "bed.csv"
     inner = fibrad.Mesh.from_stl(path, [[0, 0, 0]], 1.0)
-    factors = fibrad.view_factors([[0, 0, 0]], 1.0, walls={"cube": inner})
+    factors = fibrad.view_factors([[0, 0, 0]], 1.0, walls=fibrad.wall(inner, name="cube"))
     assert abs(factors.wall("cube")[0] - 1) < 1e-12 and inner.areas().sum() == pytest.approx(96, rel=1e-14)
     outer = fibrad.Mesh.from_stl(path, [[5, 0, 0]], 1.0)
-    seen = fibrad.view_factors([[5, 0, 0]], 1.0, directions=500, walls={"cube": outer}).wall("cube")[0]
+    seen = fibrad.view_factors([[5, 0, 0]], 1.0, directions=500, walls=fibrad.wall(f"mesh:{path}")).wall("cube")[0]
     bed.write_text("x,y,z,r\n5,0,0,1\n")
     said = subprocess.run([program, "factors", bed, "--directions", "500", "--wall", f"mesh:{path}:name=cube"], check=True,
                           capture_output=True, text=True).stdout
@@ -121,7 +121,7 @@ def test_open_mesh_is_told(tmp_path):
 
 def test_saved(small, tmp_path):
     sparse = pytest.importorskip("scipy.sparse")
-    factors = fibrad.view_factors(small.x, small.r, directions=21, walls={"zmin": -1.0}, ids=np.arange(small.n) + 7)
+    factors = fibrad.view_factors(small.x, small.r, directions=21, walls="zmin:at=-1", ids=np.arange(small.n) + 7)
     factors.save(tmp_path / "F.npz")
     back = sparse.load_npz(tmp_path / "F.npz")
     assert (back != factors.matrix).nnz == 0
@@ -130,10 +130,3 @@ def test_saved(small, tmp_path):
     assert (arrays["ids"] == factors.ids).all() and arrays["wall_names"].tolist() == [b"zmin"]
     with pytest.raises(fibrad.InputError, match="npz"):
         factors.save(tmp_path / "F.txt")
-
-
-def test_powers_say_what_they_are(small):
-    with fibrad.Heat(small.x, small.r, walls={"zmin": -1.0}, patches=24, directions=21) as heat:
-        powers = heat.solve(np.linspace(300, 900, small.n), 0.8, surroundings=300, wall_temperature=400, wall_emissivity=1)
-    text = repr(powers)
-    assert len(text) < 200 and f"{small.n} spheres of 300 to 900 K" in text and "zmin" in text and "surroundings" in text

@@ -5,7 +5,8 @@ import pytest
 import fibrad
 
 X, R = [[0.3, 0.3, 0.3], [0.7, 0.6, 0.5]], 0.2
-PLANES = {"xmin": 0.0, "xmax": 1.0, "ymin": 0.0, "ymax": 1.0, "zmin": 0.0, "zmax": 1.0}
+PLANES = "xmin:at=0,xmax:at=1,ymin:at=0,ymax:at=1,zmin:at=0,zmax:at=1"
+STATE = {"temperature": [400, 900], "emissivity": [0.5, 0.8], "surroundings": 0}
 
 
 def box():
@@ -22,8 +23,13 @@ def box():
     return walls
 
 
+def of(meshes, kelvins=None, **keys):
+    """Walls of meshes by name, with temperatures."""
+    return [fibrad.wall(mesh, name=name, temperature=kelvins[name] if kelvins else None, **keys) for name, mesh in meshes.items()]
+
+
 def test_a_box_of_triangles_is_one_of_planes():
-    meshed = fibrad.view_factors(X, R, walls=box(), directions=1000)
+    meshed = fibrad.view_factors(X, R, walls=of(box()), directions=1000)
     planes = fibrad.view_factors(X, R, walls=PLANES, directions=1000)
     assert (meshed.escaped == 0).all()
     assert np.allclose(meshed.walls, planes.walls, atol=2e-3)
@@ -31,20 +37,18 @@ def test_a_box_of_triangles_is_one_of_planes():
 
 
 def test_heat_in_a_box_of_triangles():
-    state = {"temperature": [400, 900], "emissivity": [0.5, 0.8], "wall_emissivity": 0.6, "wall_temperature": 600,
-             "surroundings": 0}
-    with fibrad.Heat(X, R, walls=box()) as meshed, fibrad.Heat(X, R, walls=PLANES) as planes:
-        assert np.allclose(meshed.solve(**state).spheres, planes.solve(**state).spheres, rtol=5e-3)
-
-
-STATE = {"temperature": [400, 900], "emissivity": [0.5, 0.8], "wall_emissivity": 0.6, "surroundings": 0}
+    kelvins = dict.fromkeys(box(), 600)
+    with fibrad.Bed(X, R, walls=of(box(), kelvins, emissivity=0.6)) as meshed, \
+            fibrad.Bed(X, R, walls=PLANES.replace(",", ":temperature=600:emissivity=0.6,") + ":temperature=600:emissivity=0.6") as planes:
+        assert np.allclose(meshed.solve(**STATE).spheres, planes.solve([400, 900], [0.5, 0.8]).spheres, rtol=5e-3)
 
 
 def test_fluxes_of_triangles():
     walls = box()
     walls["shelf"] = fibrad.Mesh([[0.02, 0.02, 0.02], [0.5, 0.02, 0.02], [0.02, 0.5, 0.02]], [[0, 1, 2]], back=True)
-    with fibrad.Heat(X, R, walls=walls) as heat:
-        powers = heat.solve(**STATE, wall_temperature={name: 300.0 + 50 * k for k, name in enumerate(walls)})
+    kelvins = {name: 300.0 + 50 * k for k, name in enumerate(walls)}
+    with fibrad.Bed(X, R, walls=of(walls, kelvins, emissivity=0.6)) as heat:
+        powers = heat.solve(**STATE)
     assert list(powers.triangle_fluxes) == list(walls) == list(powers.triangle_temperatures)
     for k, (name, mesh) in enumerate(walls.items()):
         flux, kelvins = powers.triangle_fluxes[name], powers.triangle_temperatures[name]
@@ -52,8 +56,8 @@ def test_fluxes_of_triangles():
         assert np.isnan(flux[:, 1]).all() == (mesh.back is None)
         assert (kelvins[:, 0] == 300.0 + 50 * k).all()
         assert np.nansum(flux * mesh.areas()[:, None]) == pytest.approx(powers.walls[name], rel=1e-9)
-    with fibrad.Heat(X, R, walls={"zmin": 0.0}) as heat:
-        powers = heat.solve(**STATE, wall_temperature=300.0)
+    with fibrad.Bed(X, R, walls="zmin:at=0:temperature=300") as heat:
+        powers = heat.solve(**STATE)
         assert powers.triangle_fluxes == {} == powers.triangle_temperatures
 
 
@@ -64,40 +68,32 @@ def test_temperatures_of_triangles():
                       np.concatenate([mesh.triangles + 4 * k for k, mesh in enumerate(walls.values())]))
     kelvins = {name: 300.0 + 100 * k for k, name in enumerate(walls)}
     given = np.repeat(list(kelvins.values()), 2)
-    with fibrad.Heat(X, R, walls=walls) as meshes, fibrad.Heat(X, R, walls={"tub": one}) as tub:
-        several, single = meshes.solve(**STATE, wall_temperature=kelvins), tub.solve(
-            **STATE, wall_temperature={"tub": given})
+    with fibrad.Bed(X, R, walls=of(walls, kelvins, emissivity=0.6)) as meshes, \
+            fibrad.Bed(X, R, walls=fibrad.wall(one, name="tub", temperature=given, emissivity=0.6)) as tub:
+        several, single = meshes.solve(**STATE), tub.solve(**STATE)
         assert np.allclose(several.spheres, single.spheres, rtol=5e-3)
         assert np.allclose(single.triangle_temperatures["tub"][:, 0], given, rtol=1e-12)
         assert single.wall_temperatures["tub"] == pytest.approx(np.mean(given**4)**0.25, rel=1e-9)
-        for wrong, text in ((given[1:], "12 of them"), (-given, "triangle 0 of tub is -300"),
+        for wrong, text in ((given[1:], "or 12, one for each"), (-given, "triangle 0 of tub is -300"),
                             (np.where(given > 700, np.nan, given), "triangle 10 of tub is nan")):
             with pytest.raises(fibrad.InputError, match=text):
-                tub.solve(**STATE, wall_temperature={"tub": wrong})
-    with fibrad.Heat(X, R, walls=PLANES) as planes, pytest.raises(fibrad.InputError, match="no mesh has that name"):
-        planes.solve(**STATE, wall_temperature={**dict.fromkeys(PLANES, 300.0), "zmin": given})
-    state = {**STATE, "capacity": 1e5, "duration": 10.0, "wall_temperature": {"tub": given}}
-    with fibrad.Transient(X, R, walls={"tub": one}, method="patches") as bed:
-        end = bed.advance(**state)
+                tub.solve(**STATE, walls=[fibrad.wall(one, name="tub", temperature=wrong)])
+        end = tub.advance(**STATE, capacity=1e5, duration=10.0)
         assert end.walls["tub"] == pytest.approx(10 * single.walls["tub"], rel=2e-2)
-        assert bed.advance(**state, wall_temperature_end=300.0).walls["tub"] == pytest.approx(end.walls["tub"], rel=1e-2)
-        with pytest.raises(fibrad.InputError, match="wall_temperature_end of tub: triangles with temperatures of their"):
-            bed.advance(**state, wall_temperature_end={"tub": 300.0})
-    with fibrad.Transient(X, R, walls={"tub": one}, method="factors") as bed:
-        with pytest.raises(fibrad.InputError, match="another method"):
-            bed.advance(**state)
+        with pytest.raises(fibrad.InputError, match="walls_end"):
+            tub.advance(**STATE, capacity=1e5, duration=10.0, walls_end="tub:temperature=300")
 
 
 def test_backs():
     low = {name: mesh for name, mesh in box().items() if name == "x_low"}
     low["x_low"].triangles = low["x_low"].triangles[:, ::-1].copy()
     with pytest.raises(fibrad.InputError, match="triangle [01] of x_low"):
-        fibrad.view_factors(X, R, walls=low)
+        fibrad.view_factors(X, R, walls=of(low))
     low["x_low"].back = True
-    assert fibrad.view_factors(X, R, walls=low).walls.max() > 0.05
+    assert fibrad.view_factors(X, R, walls=of(low)).walls.max() > 0.05
     low["x_low"].back = "floor"
     with pytest.raises(fibrad.InputError, match="no mesh has that name"):
-        fibrad.view_factors(X, R, walls=low)
+        fibrad.view_factors(X, R, walls=of(low))
 
 
 def test_meshes_that_are_refused():

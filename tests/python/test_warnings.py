@@ -1,4 +1,4 @@
-# test_warnings.py - what the program warns of, the package warns of, too. SPDX-License-Identifier: MIT
+# test_warnings.py - what the library warns of, in words. SPDX-License-Identifier: MIT
 import warnings
 
 import numpy as np
@@ -12,7 +12,7 @@ HEAT = {"surroundings": 300.0}
 
 
 def of(mesh, scale, x=0.0):
-    return {"plate": fibrad.Mesh(scale * mesh.vertices + [x, 0, 0], mesh.triangles, back=True)}
+    return fibrad.wall(fibrad.Mesh(scale * mesh.vertices + [x, 0, 0], mesh.triangles, back=True), name="plate", temperature=300)
 
 
 @pytest.fixture(autouse=True)
@@ -23,44 +23,41 @@ def fixture_all_are_errors():
         yield
 
 
-def bed(walls=None, scale=1.0, kind=fibrad.Heat):
-    return kind(scale * X, scale * R, walls=walls)
+def bed(walls=None, scale=1.0):
+    return fibrad.Bed(scale * X, scale * R, walls=walls)
 
 
 def moved(walls):
     """A wall that moves into spheres."""
-    with bed(dict.fromkeys(walls, 0.0)) as heat:
-        heat.move(X, walls=walls)
+    with bed("zmin:at=0") as there:
+        there.move(X, walls=walls)
 
 
 def test_nothing_is_said_of_a_good_bed():
-    with bed({"zmin": 0.0, **of(SQUARE, 1, -0.02)}) as heat:
-        heat.solve([900.0, 300.0], 0.8, wall_temperature=300.0, wall_emissivity=0.8, conductivity=30.0, **HEAT)
+    with bed(["zmin:at=0:temperature=300", of(SQUARE, 1, -0.02)]) as heat:
+        heat.solve([900.0, 300.0], 0.8, conductivity=30.0, **HEAT)
         heat.move(X + [0, 0, 1e-4])
-    with bed(kind=fibrad.Transient) as hot:
+    with bed() as hot:
+        hot.factors()
         hot.advance(900.0, 1.0, capacity=2e6 * 4 / 3 * np.pi * R**3, emissivity=0.8, **HEAT)
 
 
-@pytest.mark.parametrize("kind", [fibrad.Heat, fibrad.Transient])
-def test_millimetres_as_metres(kind):
-    with pytest.warns(UserWarning, match="radii of 20 are taken as metres"):
-        bed(scale=1000, kind=kind)
+def test_millimetres_as_metres():
+    with bed(scale=1000) as large, pytest.warns(UserWarning, match="radii of 20 are taken as metres"):
+        large.factors()  # of any unit
+        large.solve(900.0, 0.8, **HEAT)
 
 
-@pytest.mark.parametrize("make", [
-    lambda walls: fibrad.Heat(X, R, walls=walls), lambda walls: fibrad.Transient(X, R, walls=walls),
-    lambda walls: fibrad.view_factors(X, R, walls=walls), lambda walls: moved(walls),
-    lambda walls: fibrad.exchange_factors(X, R, 0.5, walls=walls, wall_emissivity=1.0),
-    lambda walls: fibrad.displacements(X, R, 0.5, walls=walls, wall_emissivity=1.0)])
+@pytest.mark.parametrize("make", [bed, moved, lambda walls: fibrad.view_factors(X, R, walls=walls)])
 def test_planes_inside_spheres(make):
     with pytest.warns(UserWarning, match=r"sphere 0 reaches through the wall zmin by 0.5 of its radius \(2 such cases"):
-        make({"zmin": 0.01})
+        make("zmin:at=0.01")
 
 
 @pytest.mark.parametrize("name, axis", [("cylinder", 2), ("xcylinder", 0), ("ycylinder", 1)])
 def test_cylinders_inside_spheres(name, axis):
     x = np.roll(X, axis + 1, axis=1)
-    tube = {name: (0.0, 0.0, 0.06), "xyz"[axis] + "min": "open", "xyz"[axis] + "max": "open"}
+    tube = f"{name}:0,0,0.06,{'xyz'[axis]}min:open,{'xyz'[axis]}max:open"
     with pytest.warns(UserWarning, match=rf"sphere of id 9 reaches through the wall {name} by 0.5 of its radius \(1 such"):
         fibrad.view_factors(x, R, walls=tube, ids=[7, 9])
 
@@ -72,28 +69,28 @@ def test_meshes_of_another_unit(tmp_path):
     with pytest.warns(UserWarning, match="not closed"):
         millimetres = fibrad.Mesh.from_stl(stl, X, R, sides="both")
     with pytest.warns(UserWarning, match=r"the wall plate is 100 long, the bed 0.09.*scale=0.001"):
-        bed({"plate": millimetres})
+        bed(fibrad.wall(millimetres, name="plate"))
     with pytest.warns(UserWarning, match=r"the wall plate is 0.0001 long, the bed 0.09.*scale=1000"):
         fibrad.view_factors(X, R, walls=of(SQUARE, 1e-3))
 
 
 def test_meshes_in_another_place():
-    with pytest.warns(UserWarning, match="the wall plate lies from 1 to 1.1 along x, the bed from -0.02 to 0.07"):
+    with pytest.warns(UserWarning, match="the wall plate lies from 1 to 1.1 along x, away from the bed"):
         fibrad.view_factors(X, R, walls=of(SQUARE, 1, 1.0))
     fibrad.view_factors(X, R, walls=of(SQUARE, 1, 1.0), box=[0.2, 0, 0])  # an image is near
 
 
 def test_spheres_that_overlap():
     with pytest.warns(UserWarning, match="sphere 0 and sphere 1 overlap by 0.1 of a radius"):
-        fibrad.Heat([[0, 0, 0], [0.038, 0, 0]], R)
+        fibrad.Bed([[0, 0, 0], [0.038, 0, 0]], R)
     with pytest.warns(UserWarning, match="sphere of id 4 and sphere of id 5 overlap by 0.1 of a radius"):
         fibrad.view_factors([[0, 0, 0], [0.038, 0, 0]], R, ids=[4, 5])
 
 
 def test_temperatures():
-    with bed() as heat, bed(kind=fibrad.Transient) as hot:
+    with bed() as heat:
         for call in (lambda kelvins: heat.solve(kelvins, 0.8, **HEAT),
-                     lambda kelvins: hot.advance(kelvins, 1.0, capacity=100.0, emissivity=0.8, **HEAT)):
+                     lambda kelvins: heat.advance(kelvins, 1.0, capacity=100.0, emissivity=0.8, **HEAT)):
             with pytest.warns(UserWarning, match="no sphere is warmer than 25 K; temperatures are in kelvins"):
                 call([25.0, 20.0])
         with pytest.warns(UserWarning, match=r"sphere 1 has 0 K \(1 spheres in all\), others have up to 900 K"):
@@ -101,17 +98,16 @@ def test_temperatures():
 
 
 def test_temperatures_around():
-    box = dict(zip(("xmin", "xmax", "ymin", "ymax", "zmin", "zmax"), (-1, 1) * 3))
-    with bed() as heat, bed(kind=fibrad.Transient) as hot, bed({"zmin": 0.0}) as floor, bed(box) as closed:
+    with bed() as heat, bed("zmin:temperature=25") as floor, bed("box:temperature=500") as closed:
         with pytest.warns(UserWarning, match="surroundings: 25 K; temperatures are in kelvins"):
             heat.solve(900.0, 0.8, surroundings=25.0)
         with pytest.warns(UserWarning, match="surroundings: 25 K; temperatures are in kelvins"):
-            hot.advance(900.0, 1.0, capacity=100.0, emissivity=0.8, surroundings=25.0)
+            heat.advance(900.0, 1.0, capacity=100.0, emissivity=0.8, surroundings=25.0)
         with pytest.warns(UserWarning, match="zmin: 25 K; temperatures are in kelvins"):
-            floor.solve(900.0, 0.8, wall_temperature=25.0, wall_emissivity=0.8, **HEAT)
+            floor.solve(900.0, 0.8, **HEAT)
         with pytest.warns(UserWarning, match="surroundings has no effect: nothing leaves a bed"):
-            closed.solve(900.0, 0.8, wall_temperature=500.0, wall_emissivity=0.8, **HEAT)
-        closed.solve(900.0, 0.8, wall_temperature=500.0, wall_emissivity=0.8)
+            closed.solve(900.0, 0.8, **HEAT)
+        closed.solve(900.0, 0.8)
         heat.solve(900.0, 0.8, surroundings=4.0)
 
 
@@ -121,13 +117,13 @@ def test_surfaces_below_nothing():
 
 
 def test_capacities_that_no_solid_has():
-    with bed(kind=fibrad.Transient) as hot, pytest.warns(UserWarning, match="the capacity of sphere 0 is 29.8 J/K for each m3"):
+    with bed() as hot, pytest.warns(UserWarning, match="the capacity of sphere 0 is 29.8 J/K for each m3"):
         hot.advance(900.0, 1e-9, capacity=1e-3, emissivity=0.8, **HEAT)
 
 
 def test_the_line_of_the_user_is_named():
     with pytest.warns(UserWarning) as caught:
-        fibrad.view_factors(X, R, walls={"zmin": 0.01})
-        bed({"zmin": 0.01})
+        fibrad.view_factors(X, R, walls="zmin:at=0.01")
+        bed("zmin:at=0.01")
         fibrad.view_factors(X, 0.028)
     assert [one.filename for one in caught] == [__file__] * 3

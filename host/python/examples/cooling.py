@@ -18,10 +18,10 @@ heat_capacity = 4 / 3 * np.pi * RADIUS**3 * DENSITY * CAPACITY  # J/K, of a sphe
 temperature = np.full(len(x), 1200.0)
 given_away = 0.0  # J, to floor and surroundings
 
-with fibrad.Transient(x, RADIUS, walls={"zmin": 0.0}) as bed:
+floor = fibrad.wall("zmin", at=0.0, temperature=FLOOR, emissivity=0.9)
+with fibrad.Bed(x, RADIUS, walls=floor) as bed:
     for time in range(1, TIMES + 1):
-        end = bed.advance(temperature, 10.0, capacity=heat_capacity, emissivity=EMISSIVITY, surroundings=SURROUNDINGS,
-                          wall_temperature={"zmin": FLOOR}, wall_emissivity={"zmin": 0.9})
+        end = bed.advance(temperature, 10.0, capacity=heat_capacity, emissivity=EMISSIVITY, surroundings=SURROUNDINGS)
         temperature = end.temperatures
         given_away += end.surroundings + end.walls["zmin"]
         if time % 5 == 0:

@@ -27,14 +27,13 @@ def modify(frame, data):
     particles = data.particles
     if "Radius" not in particles:
         raise ValueError("fibrad needs the particle property Radius")
-    bed = {"x": np.asarray(particles["Position"]), "r": np.asarray(particles["Radius"]), "box": box_of(data.cell),
-           "ids": np.asarray(particles["Particle Identifier"]) if "Particle Identifier" in particles else None}
-    factors = fibrad.view_factors(**bed)
+    ids = np.asarray(particles["Particle Identifier"]) if "Particle Identifier" in particles else None
+    bed = fibrad.Bed(np.asarray(particles["Position"]), np.asarray(particles["Radius"]), box=box_of(data.cell), ids=ids)
+    factors = bed.factors()
     data.particles_.create_property("Escaped", data=factors.escaped)
     data.particles_.create_property("Seen", data=np.diff(factors.indptr))
     data.attributes["fibrad.error"] = factors.error.max(initial=0)
     if "Temperature" in particles:
-        with fibrad.Heat(**bed) as heat:
-            powers = heat.solve(np.asarray(particles["Temperature"]), EMISSIVITY, surroundings=SURROUNDINGS)
+        powers = bed.solve(np.asarray(particles["Temperature"]), EMISSIVITY, surroundings=SURROUNDINGS)
         data.particles_.create_property("Radiative Power", data=powers.spheres)
         data.attributes["fibrad.surroundings"] = powers.surroundings

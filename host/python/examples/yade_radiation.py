@@ -10,7 +10,7 @@ CAPACITY, EMISSIVITY = 800.0, 0.8  # J/(kg K)
 EVERY = 2000  # time steps
 
 temperature = {}  # K, by the ids of the bodies
-heat = None  # made by the first call, moved by the next ones
+bed = None  # made by the first call, moved by the next ones
 last_time = 0.0
 absorbed = 0.0  # J
 
@@ -28,15 +28,14 @@ def box_of(scene):
 
 
 def radiate():
-    global heat, last_time, absorbed
+    global bed, last_time, absorbed
     ids, x, r, mass = spheres_of(O.bodies)
-    if heat is None or heat.n != len(ids):
-        heat = fibrad.Heat(x, r, box=box_of(O), walls={"zmin": 0.0}, ids=ids)
+    if bed is None or bed.n != len(ids):
+        bed = fibrad.Bed(x, r, box=box_of(O), walls=f"zmin:at=0:temperature={FLOOR}", ids=ids)
     else:
-        heat.move(x, r, box=box_of(O))
+        bed.move(x, r, box=box_of(O))
     now = np.array([temperature.setdefault(i, START) for i in ids])
-    powers = heat.solve(now, EMISSIVITY, surroundings=SURROUNDINGS, wall_temperature={"zmin": FLOOR},
-                        wall_emissivity={"zmin": 1.0})
+    powers = bed.solve(now, EMISSIVITY, surroundings=SURROUNDINGS)
     passed, last_time = O.time - last_time, O.time
     now += powers.spheres * passed / (mass * CAPACITY)
     absorbed += powers.spheres.sum() * passed

@@ -6,10 +6,9 @@
 >>> round(float(factors.data[0]), 3)
 0.03
 
-`view_factors`, `exchange_factors` and `displacements` compute whole beds. `Heat` gives net powers and temperatures.
-`contacts` finds what spheres that touch conduct, which `Heat.solve` takes.
-`Heat.shine` finds how much `Light` from outside each surface absorbs. `Transient` follows temperatures in time. `read`
-and `Mesh.from_stl` read files.
+`Bed` holds a bed and answers: `Bed.factors`, `Bed.solve` (powers and temperatures), `Bed.shine` (light from outside),
+`Bed.advance` (temperatures in time), `Bed.contacts` (what spheres that touch conduct). `view_factors` and
+`exchange_factors` are such a bed in one call. `wall` makes a wall. `read` and `Mesh.from_stl` read files.
 
 Positions are arrays (n, 3), radii are arrays (n,). The surroundings lie outside the bed and are black. A wall is a
 plane, a cylinder or a `Mesh`. A view factor is the fraction of the radiation leaving a sphere that reaches another
@@ -19,16 +18,17 @@ after reflections. The error of a row of factors is the root of the sum of the s
 The GIL is released while the library computes. Ctrl-C stops the library. Errors are subclasses of `Error`.
 """
 from . import _library
-from ._contacts import Contacts, contacts
+from ._bed import Bed, exchange_factors, view_factors
+from ._contacts import Contacts
 from ._errors import Cancelled, Error, FileError, InputError, OutOfMemory, StateError
-from ._factors import Displacements, Factors, displacements, exchange_factors, view_factors
+from ._factors import Factors
 from ._files import FileFrame, read
-from ._heat import STEFAN_BOLTZMANN, Heat, Powers
+from ._heat import STEFAN_BOLTZMANN, Advance, Powers
 from ._light import Absorbed, Light
 from ._scene import Mesh
-from ._transient import Advance, Transient
+from ._walls import wall
 
 __version__: str = _library.library.fibrad_version().decode()
-__all__ = ["Absorbed", "Advance", "Cancelled", "Contacts", "Displacements", "Error", "Factors", "FileError", "FileFrame", "Heat", "InputError", "Light",
-           "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "Transient", "contacts", "displacements", "exchange_factors", "read",
-           "view_factors"]
+__all__ = ["Absorbed", "Advance", "Bed", "Cancelled", "Contacts", "Error", "Factors", "FileError", "FileFrame",
+           "InputError", "Light", "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "exchange_factors", "read",
+           "view_factors", "wall"]

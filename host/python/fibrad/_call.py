@@ -52,16 +52,22 @@ class Call:
     def _catch(self, error: BaseException) -> None:
         self._raised = self._raised or error
 
-    def _report(self, context: Any, stage: bytes, done: int, total: int) -> int:
+    def guarded(self, function: Callable[[], Any], otherwise: Any) -> Any:
+        """What a function of the user returns. An exception is raised after the call, and `otherwise` is returned."""
         try:
-            if self._progress and not self._raised and self._progress(stage.decode(), done, total):
-                self._raised = Cancelled(status_text(CANCELLED), CANCELLED)
+            return otherwise if self._raised else function()
         except BaseException as error:
             self._catch(error)
+            return otherwise
+
+    def _report(self, context: Any, stage: bytes, done: int, total: int) -> int:
+        progress = self._progress
+        if progress and self.guarded(lambda: progress(stage.decode(), done, total), False):
+            self._raised = Cancelled(status_text(CANCELLED), CANCELLED)
         return self._raised is not None
 
     def __call__(self, function: Callable[..., int], *arguments: Any) -> int:
-        """The status of a call. Raises the exception that a signal handler or the progress function has raised."""
+        """The status of a call. Raises the exception that a signal handler or a function of the user has raised."""
         self._raised = None
         with _signals_caught(self._catch):
             status = function(*arguments)

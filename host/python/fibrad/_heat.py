@@ -1,41 +1,26 @@
-# _heat.py - net radiative powers of a bed, step after step. SPDX-License-Identifier: MIT
+# _heat.py - powers and temperatures of a bed, and what they come from. SPDX-License-Identifier: MIT
 from __future__ import annotations
 
-import ctypes
 import dataclasses
 import math
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._bed import Bed, heat_config
-from ._call import Call, Progress
+from ._call import Call
 from ._contacts import contacts_of
-from ._library import library
-from ._light import Absorbed, Light, add, lights_of, patches_pointer
-from ._scene import Walls, pointer, pointers
 from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
-from ._structures import HeatResult, HeatSources, LightResult, LightSources
-from ._values import per_sphere, real, refuse, several
-from ._warnings import warn_around, warn_surfaces, warn_temperatures
+from ._scene import MARKS, WHOLE, Packing, pointer
+from ._structures import EmissivityLaw, HeatSources, Law
+from ._values import per_sphere, real, refuse
+from ._walls import Container, Wall
 
 STEFAN_BOLTZMANN = 5.670374419e-8
 """[W/(m2 K4)]"""
 
-_SETTLE_MAX, _EMISSIVITY_CHANGE = 100, 1e-5
-
-_OF_SPHERES = ("power", "temperature", "power_error", "temperature_error", "least_temperature", "largest_temperature",
-               "centre_temperature", "surface_error", "centre_error", "conducted")
-
-
-def _law(emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]]) -> Callable[[Any], ArrayLike]:
-    if callable(emissivity):
-        function: Callable[[Any], ArrayLike] = emissivity
-        return function
-    given: ArrayLike = emissivity
-    return lambda found: given
+Emissivity = Union[ArrayLike, Callable[[Any], ArrayLike]]
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -137,222 +122,114 @@ class Powers:
                 f"error of a sphere {self.error:.2g} W>")
 
 
-class Heat(Bed):
-    """Radiation between grey diffuse spheres, walls and surroundings.
+@dataclasses.dataclass(frozen=True, repr=False, eq=False)
+class Advance:
+    """The result of a span of time. An energy is above 0 where heat was gained. The heat stored in the spheres, and the
+    energies of walls and surroundings, add up to the energy that the powers have supplied.
 
-    Each sphere and wall has a given temperature, or it gives off a given power and its temperature is found. The beams
-    between all surfaces are traced once. `solve` then gives net powers and temperatures for any sources. A solution
-    begins with the last one. The memory is freed by `close`, at the end of ``with``, or with the object. One thread at
-    a time may use the object.
-
-    Parameters
+    Attributes
     ----------
-    x : (n, 3) array
-        [m] Centres.
-    r : (n,) array or float
-        [m] Radii.
-    box : (3,) array, optional
-        [m] Lengths of the periodic box. 0: the axis is open. Default: all axes are open.
-    walls : mapping or sequence of pairs, optional
-        As for `view_factors`: ``{"zmin": 0.0, "cylinder": (x, y, radius)}``.
-    directions : int, optional
-        Directions of beams from each sphere, 8 to 65536. Default: 168.
-    points : {64, 128, 256}, optional
-        Points of each beam. Default: 64.
-    patches : {24, 96, 384}, optional
-        Patches of the surface of each sphere. Default: 96.
-    ids : (n,) array of whole numbers, optional
-        Names of the spheres, from 0. Messages use them. They decide ties.
-    threads, progress
-        As for `view_factors`. They are kept for later calls.
-
-    Examples
-    --------
-    >>> import fibrad
-    >>> with fibrad.Heat([[0, 0, 0], [0, 0, 0.03]], 0.01) as heat:
-    ...     powers = heat.solve([1000.0, 300.0], 0.8, surroundings=300.0)
-    >>> bool(powers.spheres[0] < 0 < powers.spheres[1])
-    True
+    temperatures
+        [K] (n,) temperatures of the spheres at the end.
+    spheres
+        [W] (n,) net radiative power of each sphere at the end.
+    walls
+        [J] energy that each wall has gained by radiation, by name.
+    surroundings
+        [J] energy that the surroundings have gained by radiation.
+    steps
+        Steps that were taken.
+    refused
+        Steps tried and refused.
+    corrections
+        Solutions by patches that corrected the exchange factors.
+    error
+        Largest estimated error of a step, relative to a temperature.
     """
 
-    _kind = "radiation"
+    temperatures: NDArray[np.float64]
+    spheres: NDArray[np.float64]
+    walls: dict[str, float]
+    surroundings: float
+    steps: int
+    refused: int
+    corrections: int
+    error: float
 
-    def __init__(self, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
-                 directions: Optional[int] = None, points: Optional[int] = None, patches: Optional[int] = None,
-                 ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None):
-        super().__init__(x, r, box, walls, ids, heat_config(directions, points, patches), Call(threads, progress))
+    def __repr__(self) -> str:
+        range_of = f" of {self.temperatures.min():.6g} to {self.temperatures.max():.6g} K" if self.temperatures.size else ""
+        gained = ", ".join(f"{name} {energy:.6g} J" for name, energy in [*self.walls.items(), ("surroundings", self.surroundings)])
+        return (f"<fibrad.Advance: {len(self.temperatures)} spheres{range_of}; {gained}; {self.steps} steps, error of a "
+                f"step {self.error:.2g}>")
 
-    def shine(self, lights: Union[Light, Iterable[Light]], absorptivity: ArrayLike, *, wall_absorptivity: Any = None) -> Absorbed:
-        """What spheres and walls absorb of light from outside.
 
-        Parameters
-        ----------
-        lights : Light or several
-            What shines on the bed.
-        absorptivity : (n,) array or float
-            Absorptivities of the spheres for the light, 0 to 1. The rest is reflected.
-        wall_absorptivity : mapping or float
-            Absorptivities of the walls by name, or one for all, 0 to 1. Needed with walls.
+class Sources:
+    """A fibrad_heat_sources, its arrays, and the law of emissivities."""
 
-        Returns
-        -------
-        Absorbed
-            Hand it to `solve`. It is valid until the next `shine` or `move`.
-
-        Raises
-        ------
-        InputError
-            A value is out of its range, or no open face lets a light in.
-        """
-        container, names, n = self._container, self._packing.names, self.n
-        shares = per_sphere("absorptivity", absorptivity, n, 0, 1, names)
-        of_walls = container.per_wall("wall_absorptivity", wall_absorptivity, 0, 1, frozenset())
-        array = lights_of(lights)
-        arrays = {name: np.zeros(n) for name in ("absorbed", "absorbed_first", "absorbed_error")}
-        arrays |= {name: np.zeros(len(container.names)) for name in ("wall_absorbed", "wall_absorbed_first")}
-        sources = LightSources(light=array, lights=len(array), absorptivity=pointer(shares),
-                               wall_absorptivity=pointer(of_walls))
-        result = LightResult(**{name: pointer(values) for name, values in arrays.items()})
-        self._use(library.fibrad_radiation_shine, self._packing, sources, result)
-        walls = {name: dict(zip(container.names, arrays[name].tolist())) for name in ("wall_absorbed", "wall_absorbed_first")}
-        return Absorbed(spheres=arrays["absorbed"], first=arrays["absorbed_first"], errors=arrays["absorbed_error"],
-                        walls=walls["wall_absorbed"], walls_first=walls["wall_absorbed_first"], incident=result.incident,
-                        transmitted=result.transmitted, reflected=result.reflected, error=result.error,
-                        _patches=result.patches, _of=self)
-
-    def solve(self, temperature: Optional[ArrayLike], emissivity: Union[ArrayLike, Callable[[Any], ArrayLike]], *,
-              power: Optional[ArrayLike] = None, surroundings: Optional[float] = None, wall_temperature: Any = None,
-              wall_emissivity: Any = None, wall_power: Optional[Mapping[str, float]] = None,
-              insulated: Collection[str] = (), tolerance: Optional[float] = None,
-              sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None,
-              conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Powers:
-        """Net powers and temperatures.
-
-        Parameters
-        ----------
-        temperature : (n,) array or float
-            [K] Temperatures of the spheres. NaN: the temperature is unknown, and `power` is needed. None: all are
-            unknown.
-        emissivity : (n,) array, float or function
-            Emissivities of the spheres, 0 to 1. 0 reflects everything. A function gets the temperatures (n,) and
-            returns the emissivities. It is called until the emissivities change by at most 1e-5.
-        power : (n,) array or float, optional
-            [W] Power that a sphere of unknown temperature gives off from inside. Its net power is the negative. NaN
-            where the temperature is given. One number holds for all spheres of unknown temperature.
-        surroundings : float
-            [K] Temperature of the surroundings. May be left out only if walls and periods close the bed on all sides.
-        wall_temperature : mapping or float
-            [K] Temperatures of the walls by name, or one for all others. Needed with walls. For a `Mesh` it may be an
-            array (t,), one value for each triangle.
-        wall_emissivity : mapping or float
-            Emissivities of the walls by name, or one for all, 0 to 1. Needed with walls.
-        wall_power : mapping, optional
-            [W] Power that a wall of unknown temperature gives off, by name.
-        insulated : names, optional
-            Walls that send back all that arrives, point by point.
-        tolerance : float, optional
-            Residual at which to stop, relative to the differences of emission. Default: 1e-3, or 1e-5 if a temperature
-            is unknown.
-        sigma : float
-            [W/(m2 K4)] Emission is ``sigma T**4``.
-        light : Absorbed, optional
-            The last `shine` of this bed. Absorbed light heats. Net powers are those of light and thermal radiation
-            together.
-        conductivity : (n,) array or float, optional
-            [W/(m K)] Conductivities of the solid, above 0. Temperatures of spheres are then means of their surfaces.
-            Infinite: the sphere has one temperature. Default: all do.
-        contacts : (i, j, conductance) or SciPy matrix, optional
-            [W/K] What conducts heat between spheres i and j. j may also be the name of a wall, in a list. Several
-            contacts may join the same spheres. Of a matrix (n, n), which is symmetric, each element above the diagonal
-            is a contact. `contacts` finds them by overlaps. On spheres of finite `conductivity` they act at their
-            places.
-
-        Returns
-        -------
-        Powers
-
-        Raises
-        ------
-        InputError
-            A value is out of its range, no temperatures give the powers, or the emissivities do not settle.
-        StateError
-            The object is closed, or another thread uses it.
-        OutOfMemory, Cancelled
-            As for `view_factors`.
-        """
-        container, names, n = self._container, self._packing.names, self.n
-        kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, TEMPERATURE_MAX, names,
-                             power is not None)
-        warn_temperatures(self._packing, kelvins)
-        powers = None if power is None else per_sphere("power", power, n, -POWER_MAX, POWER_MAX, names, True)
-        if powers is not None and np.any(powers) and n and not np.isnan(kelvins).any():
-            raise refuse("power is given, and all spheres have temperatures; NaN is an unknown one")
-        if power is not None and powers is not None and np.ndim(power) == 0:
-            powers = np.where(np.isnan(kelvins), powers, math.nan)
-        conducts = None if conductivity is None else per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names)
-        insulated = several("insulated", insulated)
-        given_walls = self._walls(wall_temperature, wall_emissivity, wall_power, insulated)
-        if light is not None:
-            if not isinstance(light, Absorbed):
-                raise refuse(f"light must be what shine returns, not {light!r}")
-            if light._of is not self:
-                raise refuse("light is of another bed")
-            powers = add(powers, light.spheres)
-            walls_absorb = np.array([0.0 if wall in insulated else light.walls[wall] for wall in container.names])
-            given_walls["wall_power"] = add(given_walls.get("wall_power"), walls_absorb)
+    def __init__(self, packing: Packing, container: Container, walls: list[Wall], surroundings: Optional[float],
+                 sigma: float, tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike]):
+        n, names = packing.n, packing.names
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
-        law = _law(emissivity)
-        shares = per_sphere("emissivity", law(np.where(np.isnan(kelvins), surroundings or 300., kelvins)), n, 0, 1, names)
-        sources = HeatSources(surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX),
-                              sigma=real("sigma", sigma, *SIGMA), tolerance=real("tolerance", tolerance, 0, 1),
-                              temperature=pointer(kelvins), power=pointer(powers),
-                              conductivity=pointer(conducts),
-                              **pointers(given_walls))
-        warn_around(container, surroundings, given_walls["wall_temperature"], kelvins)
-        if light is not None:
-            sources.absorbed = patches_pointer(light)
-        joined = contacts_of(((), (), ()) if contacts is None else contacts, n, container)
-        flows = np.zeros(joined.conductance.size)
-        sources.contacts, sources.conductance = joined.conductance.size, pointer(joined.conductance)
-        ends = ctypes.POINTER(ctypes.c_uint32)
-        sources.contact_first, sources.contact_second = pointer(joined.first, ends), pointer(joined.second, ends)
-        of_spheres = {name: np.zeros(n) for name in _OF_SPHERES}
-        of_walls = {name: np.zeros(len(container.names)) for name in ("wall_power", "wall_temperature", "wall_error",
-                                                                            "wall_conducted")}
-        result = HeatResult(**{name: pointer(array) for name, array in (of_spheres | of_walls).items()})
-        result.contact_flow = pointer(flows)
-        for _ in range(_SETTLE_MAX):
-            sources.emissivity = pointer(shares)
-            self._use(library.fibrad_radiation_solve, self._packing, sources, result)
-            before, known = shares, np.isfinite(of_spheres["temperature"])
-            shares = per_sphere("emissivity", law(np.where(known, of_spheres["temperature"], kelvins)), n, 0, 1, names)
-            if np.max(np.abs(shares - before)[known], initial=0) <= _EMISSIVITY_CHANGE:
-                break
-        else:
-            raise refuse("the emissivities do not settle")
-        if light is not None:
-            of_spheres["power"] += light.spheres
-            of_walls["wall_power"] += walls_absorb
-            result.surroundings_power += light.reflected + light.transmitted - light.incident
-        if surroundings is None and result.surroundings_power != 0:
-            raise refuse(f"{result.surroundings_power} W leave the bed after 100 periods: surroundings is needed")
-        if conducts is not None:
-            warn_surfaces(self._packing, of_spheres["least_temperature"])
-        sides = np.full((2, container.sides_count), math.nan)
-        if sides.size:
-            self._use(library.fibrad_radiation_sides, self._packing, pointer(sides[0]), pointer(sides[1]))
-        walls = {name: dict(zip(container.names, array.tolist())) for name, array in of_walls.items()}
-        return Powers(spheres=of_spheres["power"], walls=walls["wall_power"], surroundings=result.surroundings_power,
-                      temperatures=of_spheres["temperature"], wall_temperatures=walls["wall_temperature"],
-                      triangle_fluxes=container.by_mesh(sides[0]), triangle_temperatures=container.by_mesh(sides[1]),
-                      emissivities=before, errors=of_spheres["power_error"], wall_errors=walls["wall_error"],
-                      surroundings_error=result.surroundings_error,
-                      temperature_errors=of_spheres["temperature_error"],
-                      least_temperatures=of_spheres["least_temperature"],
-                      largest_temperatures=of_spheres["largest_temperature"],
-                      centre_temperatures=of_spheres["centre_temperature"], surface_errors=of_spheres["surface_error"],
-                      centre_errors=of_spheres["centre_error"], conducted=of_spheres["conducted"],
-                      wall_conducted=walls["wall_conducted"], contact_flows=flows,
-                      error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
-                      error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)
+        self.joined = contacts_of(contacts, n, container)
+        self.wall_temperature, self._sides = container.temperatures(walls)
+        self._wall_emissivity = container.emissivities(walls)
+        self.insulated = np.array(["insulated" in one.values for one in walls], np.uint8)
+        self._conducts = (None if conductivity is None else
+                          per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names))
+        self.c = HeatSources(
+            surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), sigma=real("sigma", sigma, *SIGMA),
+            tolerance=real("tolerance", tolerance, 0, 1), conductivity=pointer(self._conducts),
+            wall_temperature=pointer(self.wall_temperature), wall_emissivity=pointer(self._wall_emissivity),
+            insulated=pointer(self.insulated, MARKS), side_temperature=pointer(self._sides),
+            contacts=self.joined.conductance.size, conductance=pointer(self.joined.conductance),
+            contact_first=pointer(self.joined.first, WHOLE), contact_second=pointer(self.joined.second, WHOLE))
+        self._around = surroundings or 300.0
+        self._packing = packing
+        self.set_wall_power(container.powers(walls))
+
+    def has_sides(self, sides: Optional[NDArray[np.float64]]) -> bool:
+        """Whether these are the temperatures of the sides of triangles."""
+        if sides is None or self._sides is None:
+            return sides is self._sides
+        return np.array_equal(sides, self._sides, equal_nan=True)
+
+    def set_power(self, power: Optional[NDArray[np.float64]]) -> None:
+        self._power, self.c.power = power, pointer(power)
+
+    def set_wall_power(self, power: Optional[NDArray[np.float64]]) -> None:
+        self.wall_power, self.c.wall_power = power, pointer(power)
+
+    def set_emissivity(self, emissivity: Emissivity, kelvins: NDArray[np.float64], call: Call) -> Optional[Law]:
+        """Sets emissivities. The law of those that follow temperatures; None: they are constant."""
+        n, names = self._packing.n, self._packing.names
+        first = np.where(np.isnan(kelvins), self._around, kelvins)
+
+        def at(temperatures: NDArray[np.float64]) -> NDArray[np.float64]:
+            given = emissivity(temperatures) if callable(emissivity) else emissivity
+            return per_sphere("emissivity", given, n, 0, 1, names)
+
+        def follow(context: Any, temperature: Any, of_walls: Any, shares: Any, shares_of_walls: Any) -> None:
+            if not n:
+                return
+            now, to = np.ctypeslib.as_array(temperature, (n,)), np.ctypeslib.as_array(shares, (n,))
+            known = ~np.isnan(now)
+            to[known] = call.guarded(lambda: at(np.where(known, now, first)), to)[known]
+
+        self.emissivity = at(first).copy()
+        self.c.emissivity = pointer(self.emissivity)
+        if not callable(emissivity):
+            return None
+        return Law(follow=EmissivityLaw(follow), emissivity=pointer(self.emissivity),
+                   wall_emissivity=pointer(self._wall_emissivity))
+
+
+def power_of(power: Optional[ArrayLike], kelvins: NDArray[np.float64],
+             packing: Packing) -> Optional[NDArray[np.float64]]:
+    """[n] given powers. One number holds for all spheres of unknown temperature."""
+    if power is None:
+        return None
+    powers = per_sphere("power", power, packing.n, -POWER_MAX, POWER_MAX, packing.names, True)
+    if np.any(powers) and packing.n and not np.isnan(kelvins).any():
+        raise refuse("power is given, and all spheres have temperatures; NaN is an unknown one")
+    return powers if np.ndim(power) else np.where(np.isnan(kelvins), powers, math.nan)

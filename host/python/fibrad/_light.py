@@ -132,10 +132,5 @@ def lights_of(lights: Any) -> Any:
     return array
 
 
-def add(array: Optional[NDArray[np.float64]], absorbed: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Given powers and what is absorbed. None: there are none."""
-    return absorbed + (math.nan if array is None else array)
-
-
 def patches_pointer(absorbed: Absorbed) -> Any:
     return ctypes.cast(absorbed._patches, ctypes.POINTER(ctypes.c_double))

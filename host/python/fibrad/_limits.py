@@ -1,9 +1,7 @@
 # _limits.py - bounds of arguments, as in kernel/fibrad_limits.h. SPDX-License-Identifier: MIT
 DIRECTIONS = (8, 65536)
-NODES = (8, 987)
 POINTS = (64, 128, 256)
 PATCHES = (24, 96, 384)
-FLIGHTS_MAX = 256
 RELATIVE_CONDUCTIVITY_MIN = 1e-6
 LENGTH_MAX = 1e150
 TEMPERATURE_MAX = 1e20

@@ -9,6 +9,18 @@ EmissivityLaw: Any = CFUNCTYPE(None, c_void_p, POINTER(c_double), POINTER(c_doub
 Observe: Any = CFUNCTYPE(None, c_void_p, c_double, POINTER(c_double))
 
 
+class HeatSources(Structure):
+    _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
+                ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
+                ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
+                ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
+                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32),
+                ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
+                ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
+                ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
+                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("contact_places", POINTER(c_double))]
+
+
 class Plane(Structure):
     _fields_ = [("axis", c_int), ("upper", c_int), ("at", c_double)]
 
@@ -109,30 +121,9 @@ class WallRow(Structure):
                 ("rays", c_uint64), ("paths", c_uint64)]
 
 
-class DisplacementRule(Structure):
-    _fields_ = [("emissivity", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
-                ("conductivity", POINTER(c_double)), ("flights", c_uint32), ("paths", c_uint32), ("seed", c_uint64)]
-
-
-class Displacement(Structure):
-    _fields_ = [("square", c_double * 3), ("error", c_double * 3), ("absorbed", c_double), ("rays", c_uint64)]
-
-
 class HeatConfig(Structure):
     _fields_ = [("directions", c_uint32), ("points", c_uint32), ("patches", c_uint32), ("parts", c_uint32),
                 ("wall_rays", c_uint32)]
-
-
-class HeatSources(Structure):
-    _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
-                ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
-                ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
-                ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
-                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32),
-                ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
-                ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
-                ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
-                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("contact_places", POINTER(c_double))]
 
 
 class Law(Structure):
@@ -194,13 +185,13 @@ class ContactList(Structure):
 
 
 STRUCTURES: dict[str, Any] = {
-    "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_wall": Wall, "fibrad_occupancy": Occupancy,
-    "fibrad_triangles": Triangles, "fibrad_scene_config": SceneConfig, "fibrad_spheres": Spheres, "fibrad_fault": Fault,
-    "fibrad_run": Run, "fibrad_scene_facts": SceneFacts, "fibrad_warning": Warning, "fibrad_beam_rule": BeamRule,
-    "fibrad_cast_rule": CastRule, "fibrad_exchange_rule": ExchangeRule, "fibrad_bed_rule": BedRule,
-    "fibrad_factors": Factors, "fibrad_bed_matrix": BedMatrix, "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow,
-    "fibrad_displacement_rule": DisplacementRule, "fibrad_displacement": Displacement, "fibrad_heat_config": HeatConfig,
-    "fibrad_heat_sources": HeatSources, "fibrad_law": Law, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
+    "fibrad_heat_sources": HeatSources, "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_wall": Wall,
+    "fibrad_occupancy": Occupancy, "fibrad_triangles": Triangles, "fibrad_scene_config": SceneConfig,
+    "fibrad_spheres": Spheres, "fibrad_fault": Fault, "fibrad_run": Run, "fibrad_scene_facts": SceneFacts,
+    "fibrad_warning": Warning, "fibrad_beam_rule": BeamRule, "fibrad_cast_rule": CastRule,
+    "fibrad_exchange_rule": ExchangeRule, "fibrad_bed_rule": BedRule, "fibrad_factors": Factors,
+    "fibrad_bed_matrix": BedMatrix, "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow,
+    "fibrad_heat_config": HeatConfig, "fibrad_law": Law, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
     "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult, "fibrad_span": Span,
     "fibrad_contact_rule": ContactRule, "fibrad_contact_list": ContactList}
 
@@ -210,6 +201,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "fibrad_version": (c_char_p, []),
     "fibrad_why_text": (c_char_p, [c_int]),
     "fibrad_node_emissivity": (c_double, [c_double, c_double]),
+    "fibrad_heat_sources_init": (None, [POINTER(HeatSources)]),
     "fibrad_bed_new": (c_int, [POINTER(c_void_p), POINTER(SceneConfig), POINTER(Spheres), POINTER(Run)]),
     "fibrad_bed_move": (c_int, [c_void_p, POINTER(SceneConfig), POINTER(Spheres)]),
     "fibrad_bed_describe": (None, [c_void_p, POINTER(SceneFacts), POINTER(Fault)]),
@@ -220,7 +212,6 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "fibrad_view_factors": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(BedRule), POINTER(Run),
         POINTER(POINTER(BedMatrix))]),
     "fibrad_bed_wall_row": (c_int, [c_void_p, c_uint32, POINTER(WallRule), c_double, POINTER(WallRow)]),
-    "fibrad_bed_displacements": (c_int, [c_void_p, POINTER(DisplacementRule), POINTER(c_ubyte), POINTER(Displacement)]),
     "fibrad_bed_beams": (c_int, [c_void_p, POINTER(HeatConfig)]),
     "fibrad_bed_solve": (c_int, [c_void_p, POINTER(HeatSources), POINTER(Law), POINTER(HeatResult)]),
     "fibrad_bed_sides": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double)]),
