@@ -33,7 +33,7 @@ static void print_head(FILE *script, const struct output *output, const char *na
     for (uint32_t i = 0; i < what->bed->n && what->light; ++i) light += what->light->absorbed[i];
     const struct prefixed unit = unit_prefixed(fabs(net), "W"), unit_of_light = unit_prefixed(light, "W");
     gnuplot_style(script, output->path, 1500, 700);
-    fputs("set multiplot layout 1,2 margins 0.075,0.89,0.11,0.83 spacing 0.16\nset label 1 '", script);
+    fputs("set multiplot layout 1,2 margins 0.075,0.89,0.14,0.84 spacing 0.16\nset label 1 '", script);
     gnuplot_name(script, name);
     fprintf(script,
             "' at screen 0.015,0.955 font ',19' tc '#111111' noenhanced\n"
