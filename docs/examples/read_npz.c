@@ -3,8 +3,8 @@
  *     cc -std=c11 docs/examples/read_npz.c -o read_npz
  *     build/fibrad factors packing.dump -o F.npz && ./read_npz F.npz
  *
- * Reads what `fibrad factors -o OUT.npz` writes, on a machine of the same byte order: uncompressed members one behind the
- * other, each a NumPy array. Rows and columns go by the spheres' ids. Member sizes are 64-bit numbers in an extra
+ * Reads what `fibrad factors -o OUT.npz` writes, on a machine of the same byte order: uncompressed members one behind
+ * the other, each a NumPy array. Rows and columns go by the spheres' ids. Member sizes are 64-bit numbers in an extra
  * field. Checksums are not looked at. */
 #include <inttypes.h>
 #include <stdint.h>
