@@ -190,7 +190,10 @@ $(BUILD)/host/main.o $(HOST_OBJECTS): $(BUILD)/%.o: %.c | need-libraries
 # -O1: a test takes longer to compile than to run
 $(TEST_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries need-check
 	@mkdir -p $(@D)
-	$(CC) $(CFLAGS) -O1 $(TEST_FLAGS) $(LDFLAGS) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
+	$(CC) $(CFLAGS) -O1 $(TEST_FLAGS) $(LDFLAGS) $(WRAPPED) $< $(LIBRARIES) $(CHECK_LIBS) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $@
+
+# this test counts calls of the kernel
+$(BUILD)/tests/test_scenes: WRAPPED = -Wl,--wrap=fibrad_scene_init
 
 $(BENCH_PROGRAMS): $(BUILD)/%: %.c $(LIBRARIES) | need-libraries
 	@mkdir -p $(@D)
