@@ -9,7 +9,7 @@
  *   kernel   fibrad_heap_resize, fibrad_host_sizeof
  *
  * Example   fibrad_bed *bed;
- *           fibrad_bed_matrix *factors;
+ *           fibrad_bed_matrix *factors = NULL;
  *           int status = fibrad_bed_new(&bed, NULL, &spheres, NULL);
  *           if (status == FIBRAD_OK) status = fibrad_bed_factors(bed, NULL, &factors);
  *           if (status == FIBRAD_OK) ... factors->matrix has the rows ...
@@ -100,8 +100,7 @@ typedef enum fibrad_warning_code {
     FIBRAD_WARNING_STORE = 9,      /* sphere first stores value J/(m3 K), if L is the metre: no solid does */
     FIBRAD_WARNING_OPEN_ROWS = 10, /* sums of rows of walls are off by value */
     FIBRAD_WARNING_APART = 11,     /* rows of walls and of spheres disagreed by value before they were closed */
-    FIBRAD_WARNING_CHANGED_ROW = 12 /* closing has changed row first by value times its error, above
-                                       1e-4 */
+    FIBRAD_WARNING_CHANGED_ROW = 12 /* closing has changed row first, by value times its error */
 } fibrad_warning_code;
 #define FIBRAD_WARNINGS_MAX 12
 
