@@ -84,7 +84,7 @@ static void add_beams(fibrad_heat_config *config, double times, double most) {
 }
 
 /* The part of the error of patches that is left of four times the patches. */
-#define PATCHES_LEFT 0.65
+#define PATCHES_LEFT 0.5
 
 /* The part of the allowed error that beams may have beside patches. */
 static double beams_beside(double patches) { return sqrt(1 - pow(fmin(patches, PATCHES_MOST), 2)); }
