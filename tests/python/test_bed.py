@@ -101,6 +101,7 @@ def test_words_of_walls():
     ("zmin:warmth=3", "'warmth=3' is of no use here; there are at=, open"), ("zmin:at", "'at' is of no use"),
     ("zmin:3", "'3' is of no use"), ("cylinder:0,3", "cylinder:X,Y,R, a place and a radius"), ("xcylinder", "xcylinder:Y,Z,R"),
     ("cylinder:0,0,3:at=1", "at is of no use"), ("box:open", "open is of no use"), ("zmin:name=a", "name is of no use"),
+    ("zmin:scale=2", "scale is of no use"), ("zmin:both", "sides is of no use"),
     ({"zmin": 0}, "walls must be words"), ([3], "words such as"), (5, "walls must be words"),
     ([fibrad.wall(fibrad.Mesh(np.eye(3), [[0, 1, 2]], back=True), name="a")] * 2, "a is the name of two walls"),
     ("zmin:at=1,zmax:at=-1", "wall zmax: contradicts the box or another wall"), ("zmin:at=.5", "beyond a wall: sphere 0 at"),

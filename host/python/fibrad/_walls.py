@@ -86,7 +86,9 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
              "absorptivity": absorptivity}
     values = {key: value for key, value in given.items() if value is not None}
     useless = [key for key, use in (("at", at is not None and kind != "plane"), ("open", open and kind != "plane"),
-                                    ("name", name is not None and kind != "mesh")) if use]
+                                    ("name", name is not None and kind != "mesh"),
+                                    ("scale", scale != 1.0 and kind != "mesh"),
+                                    ("sides", sides != "auto" and kind != "mesh")) if use]
     if useless:
         raise refuse(f"wall {word}: {useless[0]} is of no use here")
     several = ["open", *values] if open else [key for key in _HEAT if key in values]
