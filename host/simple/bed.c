@@ -111,7 +111,7 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     bed->traced = false;
     fibrad_scene_describe(scene, &bed->facts);
     fibrad_stepping_move(bed);
-    fibrad_bed_warn_of_places(bed);
+    memset(bed->warning, 0, sizeof bed->warning);
     free(bed->contacts);
     bed->contacts = NULL;
     return FIBRAD_OK;

@@ -98,9 +98,8 @@ int fibrad_stepping_compare(fibrad_bed *bed, const fibrad_heat_sources *sources,
  * fibrad_network_solve or fibrad_bed_solve. */
 int fibrad_stepping_solve(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_heat_result *result);
 
-/* Finds warnings: of positions and walls, which forgets all others; of sources, of which spheres have `temperature`
- * (NULL: none is given); of surfaces that conduct; of heat capacities; of factors. */
-void fibrad_bed_warn_of_places(fibrad_bed *bed);
+/* Finds warnings: of sources, of which spheres have `temperature` (NULL: none is given); of surfaces that conduct; of
+ * heat capacities; of factors. Those of positions and walls are found by fibrad_bed_warnings. */
 void fibrad_bed_warn_of_sources(fibrad_bed *bed, const fibrad_heat_sources *sources, const double *temperature);
 void fibrad_bed_warn_of_surfaces(fibrad_bed *bed, const fibrad_heat_result *result);
 void fibrad_bed_warn_of_stores(fibrad_bed *bed, const double *capacity);

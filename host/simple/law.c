@@ -22,10 +22,7 @@ static bool are_emissivities(const double *emissivity, uint32_t n) {
 
 static double largest_change(const double *before, const double *now, uint32_t n) {
     double largest = 0;
-    for (uint32_t i = 0; i < n; ++i) {
-        const double change = fabs(now[i] - before[i]);
-        if (change > largest) largest = change;
-    }
+    for (uint32_t i = 0; i < n; ++i) largest = larger_of(fabs(now[i] - before[i]), largest);
     return largest;
 }
 

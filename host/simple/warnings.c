@@ -19,8 +19,8 @@
 #define STORE_HIGH    3e9
 #define PI            3.14159265358979323846
 
-static fibrad_warning *new_warning(fibrad_bed *bed, int code, uint32_t first, double value) {
-    fibrad_warning *warning = &bed->warning[code - 1];
+static fibrad_warning *new_warning(fibrad_warning *list, int code, uint32_t first, double value) {
+    fibrad_warning *warning = &list[code - 1];
     *warning = (fibrad_warning){.code = code, .first = first, .count = 1, .value = value};
     return warning;
 }
@@ -47,7 +47,7 @@ static double reach_beyond(const fibrad_spheres *s, const fibrad_wall *wall, uin
     return s->r[i] + (wall->plane.upper ? beyond : -beyond);
 }
 
-static void warn_of_cuts(fibrad_bed *bed) {
+static void warn_of_cuts(const fibrad_bed *bed, fibrad_warning *list) {
     uint32_t count = 0, sphere = 0, wall = 0;
     double worst = 0;
     for (uint32_t b = 0; b < bed->facts.walls; ++b)
@@ -57,7 +57,7 @@ static void warn_of_cuts(fibrad_bed *bed) {
             if (depth > worst) worst = depth, sphere = i, wall = b;
         }
     if (count == 0) return;
-    fibrad_warning *warning = new_warning(bed, FIBRAD_WARNING_CUT, sphere, worst);
+    fibrad_warning *warning = new_warning(list, FIBRAD_WARNING_CUT, sphere, worst);
     warning->wall = wall + 1, warning->count = count;
 }
 
@@ -93,7 +93,7 @@ static double longest(const struct extent *extent) {
 }
 
 /* Meshes of another unit than the bed, or in another place. */
-static void warn_of_meshes(fibrad_bed *bed) {
+static void warn_of_meshes(const fibrad_bed *bed, fibrad_warning *list) {
     const fibrad_spheres *s = &bed->spheres;
     struct extent all = nowhere;
     double radii = 0;
@@ -104,30 +104,30 @@ static void warn_of_meshes(fibrad_bed *bed) {
         const struct extent mesh = extent_of_mesh(bed->config.triangles, b);
         const double ratio = longest(&mesh) / longest(&all), near = 2 * radii / s->n;
         if (ratio > SIZES_APART || (ratio < 1 / SIZES_APART && ratio > 0)) {
-            fibrad_warning *warning = new_warning(bed, FIBRAD_WARNING_MESH_SIZE, 0, longest(&mesh));
+            fibrad_warning *warning = new_warning(list, FIBRAD_WARNING_MESH_SIZE, 0, longest(&mesh));
             warning->wall = b + 1, warning->other = longest(&all);
         }
         for (uint32_t axis = 0; axis < 3; ++axis) {
             if (bed->config.period[axis] > 0 ||
                 (mesh.low[axis] <= all.high[axis] + near && mesh.high[axis] >= all.low[axis] - near))
                 continue;
-            fibrad_warning *warning = new_warning(bed, FIBRAD_WARNING_MESH_PLACE, axis, mesh.low[axis]);
+            fibrad_warning *warning = new_warning(list, FIBRAD_WARNING_MESH_PLACE, axis, mesh.low[axis]);
             warning->wall = b + 1, warning->other = mesh.high[axis];
             break;
         }
     }
 }
 
-void fibrad_bed_warn_of_places(fibrad_bed *bed) {
+/* Warnings of positions and walls. They are found when they are asked for: beds that move seldom ask. */
+static void warn_of_places(const fibrad_bed *bed, fibrad_warning *list) {
     const uint32_t first = bed->facts.overlap_pair[0], second = bed->facts.overlap_pair[1];
-    memset(bed->warning, 0, sizeof bed->warning);
     if (bed->facts.overlap_max > OVERLAP_LARGE) {
-        fibrad_warning *warning = new_warning(bed, FIBRAD_WARNING_OVERLAP, first, bed->facts.overlap_max);
+        fibrad_warning *warning = new_warning(list, FIBRAD_WARNING_OVERLAP, first, bed->facts.overlap_max);
         warning->second = second;
         warning->other = overlap_error(bed->spheres.r[first], bed->spheres.r[second], bed->facts.overlap_max);
     }
-    warn_of_cuts(bed);
-    warn_of_meshes(bed);
+    warn_of_cuts(bed, list);
+    warn_of_meshes(bed, list);
 }
 
 /* Warns of the first surroundings, or the first wall, whose temperature looks like degrees Celsius. */
@@ -135,7 +135,7 @@ static void warn_of_celsius(fibrad_bed *bed, const fibrad_heat_sources *s) {
     for (uint32_t b = 0; b <= bed->facts.walls; ++b) {
         const double t = b == 0 ? s->surroundings : s->wall_temperature ? s->wall_temperature[b - 1] : NAN;
         if (!(t > SPACE && t < WARM_CELSIUS)) continue;
-        new_warning(bed, FIBRAD_WARNING_AROUND, 0, t)->wall = b;
+        new_warning(bed->warning, FIBRAD_WARNING_AROUND, 0, t)->wall = b;
         return;
     }
 }
@@ -149,16 +149,16 @@ void fibrad_bed_warn_of_sources(fibrad_bed *bed, const fibrad_heat_sources *s, c
         if (temperature[i] == 0 && zeros++ == 0) first = i;
     }
     if (most > 0 && most < COLD)
-        new_warning(bed, FIBRAD_WARNING_COLD, 0, most);
+        new_warning(bed->warning, FIBRAD_WARNING_COLD, 0, most);
     else
         warn_of_celsius(bed, s);
-    if (zeros > 0 && most > 0) new_warning(bed, FIBRAD_WARNING_ZERO, first, most)->count = zeros;
+    if (zeros > 0 && most > 0) new_warning(bed->warning, FIBRAD_WARNING_ZERO, first, most)->count = zeros;
 }
 
 void fibrad_bed_warn_of_surfaces(fibrad_bed *bed, const fibrad_heat_result *result) {
     for (uint32_t i = 0; i < bed->facts.spheres && result->least_temperature; ++i) {
         if (!(result->least_temperature[i] < 0)) continue;
-        new_warning(bed, FIBRAD_WARNING_SURFACE, i, result->least_temperature[i]);
+        new_warning(bed->warning, FIBRAD_WARNING_SURFACE, i, result->least_temperature[i]);
         return;
     }
 }
@@ -167,7 +167,7 @@ void fibrad_bed_warn_of_stores(fibrad_bed *bed, const double *capacity) {
     for (uint32_t i = 0; i < bed->facts.spheres; ++i) {
         const double r = bed->spheres.r[i], store = capacity[i] / (4 * PI / 3 * r * r * r);
         if (store >= STORE_LOW && store <= STORE_HIGH) continue;
-        new_warning(bed, FIBRAD_WARNING_STORE, i, store);
+        new_warning(bed->warning, FIBRAD_WARNING_STORE, i, store);
         return;
     }
 }
@@ -176,16 +176,20 @@ void fibrad_bed_warn_of_rows(fibrad_bed *bed, const fibrad_factors *matrix) {
     const bool walls = matrix->wall_wall != NULL;
     withdraw(bed, FIBRAD_WARNING_OPEN_ROWS, FIBRAD_WARNING_CHANGED_ROW);
     if (walls && matrix->wall_closure > CLOSED)
-        new_warning(bed, FIBRAD_WARNING_OPEN_ROWS, 0, matrix->wall_closure);
+        new_warning(bed->warning, FIBRAD_WARNING_OPEN_ROWS, 0, matrix->wall_closure);
     else if (walls && matrix->wall_correction > APART)
-        new_warning(bed, FIBRAD_WARNING_APART, 0, matrix->wall_correction);
+        new_warning(bed->warning, FIBRAD_WARNING_APART, 0, matrix->wall_correction);
     else if (matrix->changed > CHANGE_LARGE && matrix->changed * matrix->error[matrix->changed_row] > CHANGE_LEAST)
-        new_warning(bed, FIBRAD_WARNING_CHANGED_ROW, matrix->changed_row, matrix->changed);
+        new_warning(bed->warning, FIBRAD_WARNING_CHANGED_ROW, matrix->changed_row, matrix->changed);
 }
 
 uint32_t fibrad_bed_warnings(const fibrad_bed *bed, fibrad_warning *warning) {
+    fibrad_warning list[FIBRAD_WARNINGS_MAX];
     uint32_t count = 0;
-    for (int k = 0; bed && k < FIBRAD_WARNINGS_MAX; ++k)
-        if (bed->warning[k].code) warning[count++] = bed->warning[k];
+    if (!bed) return 0;
+    memcpy(list, bed->warning, sizeof list);
+    warn_of_places(bed, list);
+    for (int k = 0; k < FIBRAD_WARNINGS_MAX; ++k)
+        if (list[k].code) warning[count++] = list[k];
     return count;
 }
