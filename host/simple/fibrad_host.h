@@ -55,7 +55,7 @@ extern "C" {
  *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
-/* How a call runs. NULL or zeroed: OpenMP's threads, no progress. */
+/* How the calls of a bed run. NULL or zeroed: OpenMP's threads, no progress. */
 typedef struct fibrad_run {
     int threads;               /* 1 to 1024; 0: OMP_NUM_THREADS, or else all processors, at most 1024 */
     fibrad_progress *progress; /* NULL: none */
@@ -65,8 +65,8 @@ typedef struct fibrad_run {
 
 /* ---- bed ------------------------------------------------------------------------------------------------------- */
 
-/* A bed: spheres, walls, openings and periods. fibrad_bed_new makes its scene. The bed traces its beams when they are
- * first needed, and keeps scene and beams until it moves. */
+/* A bed: spheres, walls, openings and periods. fibrad_bed_new makes its scene. Beams are traced when they are first
+ * needed. The bed keeps scene and beams until fibrad_bed_move. */
 typedef struct fibrad_bed fibrad_bed;
 
 /* Makes a bed. All is copied but an occupancy (fibrad_scene_config), which must stay as it is.
