@@ -496,7 +496,8 @@ typedef struct fibrad_beam_rule {
  * The factor to sphere j is the mean of this fraction over all windows.
  *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
  *                directions^-1.5, that of factors to walls a little more slowly. If sphere i sees no other sphere and
- *                cuts no wall, and there is no cutoff, the factors to planes and to the cylinder are exact.
+ *                cuts no wall, and there is no cutoff, factors to walls are exact: in a cylinder to 4e-7, which `error`
+ *                leaves out, else to rounding.
  *   points       Each point of the window is one ray. The fraction is that of the points that meet sphere j.
  *
  * In a periodic scene, all images of one sphere have one entry together. Sphere i may see its own images. A beam meets
