@@ -365,8 +365,7 @@ SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SAN
             CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined" HOST_LEVEL=-O0 TEST_LEVEL="-O0 -g1"
 
 ## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
-OF_MEMORY = bed_make curve heat_arguments matrix_calls part protocol protocol_heat read read_furnace row_parts scene status \
-            work write
+OF_MEMORY = bed_make curve heat_arguments matrix_calls protocol protocol_heat read read_furnace scene status work write
 sanitized:
 	+@LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 CK_FORK=no \
 	    $(SANITIZED) TESTS="$(OF_MEMORY:%=tests/test_%.c)" run-programs

@@ -13,7 +13,12 @@ FIXTURE(make_folder, remove_folder)
 TEST(help_and_version) {
     SUCCEED("--help");
     ck_assert(strstr(printed, "factors") && strstr(printed, "pair"));
+    SUCCEED("help");
+    assert_has(printed, "Commands:");
+    FAIL_WITH(2, "help", "nothing");
     SUCCEED("--version");
+    assert_begins(printed, "fibrad ");
+    SUCCEED("-V");
     assert_begins(printed, "fibrad ");
     SUCCEED("factors", "--help", "all");
     static const char *const options[] = {"--method",  "--directions", "--areas",    "--points",         "--cutoff",

@@ -121,7 +121,7 @@ TEST(contacts_in_series) {
 
 /* A random bed conducts more by radiation and contacts together than by both alone. */
 TEST(together_exceeds_the_sum) {
-    struct bed bed = packing(500, .8, 1.2, .55, 3, true);
+    OWNED_BED bed = packing(500, .8, 1.2, .55, 3, true);
     char text[40000] = "x,y,z,radius\n", *at = text + strlen(text);
     for (uint32_t i = 0; i < bed.n; ++i)
         at += sprintf(at, "%.12g,%.12g,%.12g,%.12g\n", bed.x[i], bed.y[i], bed.z[i], bed.r[i]);
@@ -132,7 +132,6 @@ TEST(together_exceeds_the_sum) {
     const double total = value_of("k_total_z_W_mK");
     ck_assert_double_ge(total, value_of("k_radiation_z_W_mK") + value_of("k_conduction_z_W_mK"));
     ck_assert_double_le(value_of("k_total_z_W_mK_error"), .01 * total);
-    bed_free(&bed);
 }
 
 /* Beyond the ends of tables the value at the end is taken, with a warning. */
