@@ -362,7 +362,7 @@ SANITIZE  = address,undefined
 SANITIZED_ISAS = scalar $(if $(shell grep -m 1 avx512dq /proc/cpuinfo),avx512,$(lastword $(filter-out scalar avx512,$(ISAS))))
 ALL_ISAS  = BUILD=$(BUILD)/nightly SANITIZED_ISAS="$(ISAS)"
 SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SANITIZED_ISAS)" CC=clang LDFLAGS=-fsanitize=$(SANITIZE) \
-            CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined" HOST_LEVEL=-O0 TEST_LEVEL="-O0 -g1"
+            CFLAGS="-O1 -g -fsanitize=fuzzer-no-link,$(SANITIZE) -fno-sanitize-recover=undefined" HOST_LEVEL=-O0 TEST_LEVEL="-O1 -g1"
 
 ## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
 OF_MEMORY = bed_make curve heat_arguments matrix_calls protocol protocol_heat read read_furnace scene status work write

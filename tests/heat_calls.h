@@ -27,7 +27,8 @@ struct contents {
     uint32_t n;
 };
 
-static const fibrad_heat_config heat_config = {.directions = 24, .patches = 24, .wall_rays = 2000, .parts = PARTS};
+static const fibrad_heat_config heat_config = {
+    .directions = 12, .points = 64, .patches = 24, .wall_rays = 2000, .parts = PARTS};
 
 /* Spheres in two layers between a floor, a ceiling and one side wall. The other sides are open. */
 static inline struct contents contents_of(uint64_t seed) {
