@@ -76,7 +76,7 @@
  *              centres inside other spheres             fibrad_spheres_inside
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
- *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init, _count
+ *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _close, _read, _reciprocity
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
@@ -468,9 +468,6 @@ size_t fibrad_line_set_size(uint32_t lines);
  *   Cost     microseconds
  *   Source   docs/methods.md section 12 */
 int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines);
-
-/* The number of lines of a set. NULL: 0. */
-uint32_t fibrad_line_set_count(const fibrad_line_set *set);
 
 /* For fibrad_beam_rule.chords: exact areas; as many chords as suit the number of lines or directions. */
 #define FIBRAD_CHORDS_NONE   1

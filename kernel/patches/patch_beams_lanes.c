@@ -311,7 +311,8 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     const bool starts = slot < FIBRAD_WALLS ? fibrad_heat_wall_ray(heat, slot, k, origin, w)
                                             : fibrad_heat_mesh_ray(heat, slot - FIBRAD_MESHES, k, origin, w, &side);
     if (!starts) return FIBRAD_OK;
-    LANED(fibrad_trace_point)(heat->scene, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
+    LANED(fibrad_trace_point)
+    (heat->scene, NULL, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
     if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
     ray->from =
         slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin) : fibrad_heat_mesh_patch(heat, side, origin);
@@ -343,9 +344,9 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
         return true;
     }
     if (sphere)
-        LANED(fibrad_trace_once)(scene, body, ray->normal, ray->direction, &hit);
+        LANED(fibrad_trace)(scene, NULL, body, ray->normal, ray->direction, &hit);
     else
-        LANED(fibrad_trace_point)(scene, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
+        LANED(fibrad_trace_point)(scene, NULL, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
     if (hit.sphere != FIBRAD_NONE && !sphere && hit.distance == 0 && scene->container.cuts) return true;
     *next = beam + 1;
     if (hit.sphere != FIBRAD_NONE) {

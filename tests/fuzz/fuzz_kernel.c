@@ -809,7 +809,6 @@ static void try_furnace(void) {
             write_some(arrays.e, cells);
             write_some(arrays.theta[byte() % 3][byte() % 2], cells);
             write_some(arrays.flux[byte() % 3][byte() % 2], cells);
-            (void)fibrad_furnace_balance(furnace);
             break;
         case 3:
             (void)fibrad_furnace_estimate(furnace, tally, byte() % 2 ? FIBRAD_THETA_PAPER : FIBRAD_THETA_DEFINITION,
