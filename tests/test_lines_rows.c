@@ -335,8 +335,7 @@ TEST(collections_change_no_bit) {
     for (size_t at = 0; fibrad_rows_read(&all, &at, &row);) {
         assert_ok(fibrad_beam_row(scene, &work, row.sphere, &rule, &arrays));
         ck_assert(same_bits(&row, &arrays));
-        ck_assert(row.lines == fibrad_line_set_lines(50) && row.noise == arrays.noise &&
-                  row.shares == arrays.shares);
+        ck_assert(row.lines == fibrad_line_set_lines(50) && row.noise == arrays.noise && row.shares == arrays.shares);
         ck_assert_mem_eq(row.half, half, row.length * sizeof *half);
     }
     OWNED_MATRIX one = matrix_of(scene, &all, 1, NULL);
