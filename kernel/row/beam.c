@@ -1,7 +1,6 @@
 /* beam.c - checks a beam rule and hands it to the version for the scene's instruction set. SPDX-License-Identifier: MIT
  */
 #include "row/beam.h"
-#include "row/beam_lanes.h"
 #include "mask/line_set.h"
 
 /* The number of directions rises in steps of an eighth. Each step takes a sixth off the error. The steps aim a

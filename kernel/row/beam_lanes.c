@@ -3,7 +3,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "sample/direction.h"
-#include "row/beam_lanes.h"
+#include "row/beam.h"
 #include "pair/free_pair.h"
 #include "workspace/segments_lanes.h"
 #include "row/mesh_share_lanes.h"
