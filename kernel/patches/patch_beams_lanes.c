@@ -163,14 +163,15 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
  * then smaller. Otherwise beams would meet walls that are hidden: docs/methods.md section 9. */
 #define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
-/* Whether one of two directions rises and the other falls across a plane. Between them other spheres may come in
- * view, at any distance. */
-static bool crosses_horizon(const fibrad_container *container, const double a[3], const double b[3]) {
+/* Whether two directions from a point meet different walls, and one of them rises and the other falls across a plane.
+ * Between them other spheres may come in view, at any distance. */
+static bool crosses_horizon(const fibrad_scene *scene, const double origin[3], const double a[3], const double b[3]) {
+    const fibrad_container *c = &scene->container;
     bool crosses = false;
+    double distance;
     for (int axis = 0; axis < 3; axis++)
-        if (container->low[axis] > -__builtin_inf() || container->high[axis] < __builtin_inf())
-            crosses |= a[axis] * b[axis] < 0;
-    return crosses;
+        if (c->low[axis] > -__builtin_inf() || c->high[axis] < __builtin_inf()) crosses |= a[axis] * b[axis] < 0;
+    return crosses && fibrad_walls_exit(scene, origin, a, &distance) != fibrad_walls_exit(scene, origin, b, &distance);
 }
 
 /* The patch that the beam of open point p of window k meets. */
@@ -199,12 +200,12 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
         origin[axis] = work->centre[axis] + work->unit * n[axis];
         w[axis] = g + (du * e + dv * f);
     }
-    const uint32_t patch = fibrad_heat_leaves(heat, origin, w);
-    if (!crosses_horizon(&heat->scene->container, frame + 6, w)) return patch;
-    const uint32_t straight = fibrad_heat_leaves(heat, origin, frame + 6);
-    const double length = fibrad_sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), at[2] = {x, y};
-    const double way[3] = {w[0] / length, w[1] / length, w[2] / length};
-    return patch == straight || LANED(fibrad_beam_turned)(work, frame, at, way) ? patch : straight;
+    if (crosses_horizon(heat->scene, origin, frame + 6, w)) {
+        const double length = fibrad_sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), at[2] = {x, y};
+        const double way[3] = {w[0] / length, w[1] / length, w[2] / length};
+        if (!LANED(fibrad_beam_turned)(work, frame, at, way)) return fibrad_heat_leaves(heat, origin, frame + 6);
+    }
+    return fibrad_heat_leaves(heat, origin, w);
 }
 
 /* Keeps the beams of a word of window k that meet spheres. Returns the end of the beams that are kept. */
