@@ -73,7 +73,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
         fibrad_footprint_make(f, scene, light, k);
         for (uint32_t p = 0; p < f->pieces; p++) area[f->piece[p].slot] += f->piece[p].sign * f->piece[p].area;
         all += fibrad_footprint_area(f);
-        fibrad_light_add_ends(scene, area, light->flux / count, &sum);
+        fibrad_light_add_ends(scene, area, f->flux, &sum);
     }
     if (!(all > 0)) {
         if (fault != NULL) fault->why = FIBRAD_WHY_DARK;
@@ -84,7 +84,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
 }
 
 /* Adds what one sphere takes in one direction. */
-static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, double flux, double *power,
+static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, double *power,
                     fibrad_light_ends *kept) {
     fibrad_footprint *f = fibrad_light_footprint(space);
     const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
@@ -94,8 +94,8 @@ static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t
     if (status != FIBRAD_OK) return status;
     fibrad_footprint_place(f, centre, uv);
     if (open > 0) fibrad_footprint_share(f, &space->areas, open, uv, scene->r[place], area);
-    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) *power += flux * area[slot];
-    fibrad_light_add_ends(scene, area, flux, kept);
+    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) *power += f->flux * area[slot];
+    fibrad_light_add_ends(scene, area, f->flux, kept);
     return FIBRAD_OK;
 }
 
@@ -111,7 +111,7 @@ static int take_all(const fibrad_scene *scene, fibrad_workspace *space, const fi
         fibrad_footprint_make(fibrad_light_footprint(space), scene, light, k);
         all += fibrad_footprint_area(fibrad_light_footprint(space));
         for (uint32_t i = from; i < to && status == FIBRAD_OK; i++)
-            status = take_one(scene, space, scene->place[i], light->flux / count, &power[i - from], kept);
+            status = take_one(scene, space, scene->place[i], &power[i - from], kept);
     }
     for (uint32_t i = from; i < to; i++) kept->spheres += power[i - from];
     return status != FIBRAD_OK || all > 0 ? status : FIBRAD_E_ARGUMENT;
