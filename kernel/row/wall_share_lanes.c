@@ -334,7 +334,7 @@ bool LANED(fibrad_beam_turned)(const fibrad_workspace *work, const double frame[
         along += n[k] * way[k], cosine += w[k] * way[k];
     }
     for (int k = 0; k < 3; k++) n[k] += up * way[k] - along / cosine * (w[k] + way[k]);
-    LANED(fibrad_trace_once)(work->scene, work->place, n, way, &hit);
+    LANED(fibrad_trace)(work->scene, NULL, work->place, n, way, &hit);
     return hit.sphere == FIBRAD_NONE && hit.side == FIBRAD_NO_SIDE;
 }
 
@@ -362,6 +362,17 @@ static double part_through(fibrad_workspace *work, const double frame[9], const 
     return all > 0 ? free / all : 0;
 }
 
+/* Adds a window of which the fields from `k` to `slope` are set, but for the grids. */
+static void share_window(fibrad_workspace *work, const double frame[9], const fibrad_points *points,
+                         const fibrad_window_set *set, fibrad_wall_window *window) {
+    fibrad_wall_room *walls = work->walls;
+    for (int n = 0; n < 3; n++) window->grid[n] = fibrad_grid_of(set->middle[n], window->k);
+    fibrad_wall_window_begin(window, &walls->view, frame);
+    window->band = fibrad_wall_window_band(window, &walls->view, work->turned);
+    if (window->band > 0 && window->open > 0) window->through = part_through(work, frame, points, window);
+    if (!fibrad_wall_window_simple(window, &walls->view, &walls->sums)) share_by_lines(work, points, window);
+}
+
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                const fibrad_window_set *set, double rest, double whole) {
     if (rest == 0) {
@@ -369,7 +380,6 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         return;
     }
     fibrad_wall_window window = {.k = k, .n = set->directions, .open = rest, .part = 1};
-    for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
     window.weight = whole / set->whole;
     window.end = work->entries.end;
     window.parallel = work->parallel;
@@ -379,11 +389,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
-    fibrad_wall_window_begin(&window, &work->walls->view, frame);
-    window.band = fibrad_wall_window_band(&window, &work->walls->view, work->turned);
-    if (window.band > 0) window.through = part_through(work, frame, points, &window);
-    if (!fibrad_wall_window_simple(&window, &work->walls->view, &work->walls->sums))
-        share_by_lines(work, points, &window);
+    share_window(work, frame, points, set, &window);
 }
 
 /* Adds to `all` of the regions what hidden windows would see. */
@@ -395,12 +401,8 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
         fibrad_wall_window window = {.k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
-        for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
         window.end = set->ends && (k == 0 || k == set->directions - 1);
-        fibrad_wall_window_begin(&window, &work->walls->view, frame);
-        window.band = fibrad_wall_window_band(&window, &work->walls->view, work->turned);
-        if (!fibrad_wall_window_simple(&window, &work->walls->view, &work->walls->sums))
-            share_by_lines(work, all, &window);
+        share_window(work, frame, all, set, &window);
     }
 }
 
