@@ -26,11 +26,6 @@ static const struct {
     {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
     {"correlations", "grey spheres: F_E of random beds beside correlations that reactor codes use",
      reproduce_correlations},
-    {"conducting", "spheres that conduct: F_E against k*", reproduce_conducting},
-    {"contacts", "beds with contacts and gas: conductivities that were measured", reproduce_contacts},
-    {"exchange", "grey spheres: exchange factor against the distance of the centres", reproduce_exchange},
-    {"exchange-wall", "grey spheres: exchange factor to a wall against distance", reproduce_exchange_wall},
-    {"faces", "grey spheres: emissivity and absorptance of the face of a bed", reproduce_faces},
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
 
