@@ -20,8 +20,8 @@ FIXTURE(name_directory, NULL)
 
 /* Runs an experiment. The largest |difference| over the lines with this `source`. */
 static double largest(char *name, const char *source, int *lines) {
-    char *arguments[] = {"--only", name, "--no-plots", "-o", directory}, path[240], line[400];
-    ck_assert_int_eq(command_reproduce(5, arguments), 0);
+    char *arguments[] = {"--only", name, "-o", directory}, path[240], line[400];
+    ck_assert_int_eq(command_reproduce(4, arguments), 0);
     snprintf(path, sizeof path, "%s/comparison.csv", directory);
     OWNED_FILE *file = opened(path, "r");
     double worst = 0;

@@ -14,14 +14,9 @@
 
 /* The run of `fibrad reproduce`, and the current experiment. */
 struct reproduce {
-    const char *directory; /* for files; NULL: no files are written */
-    bool plots;
-    struct output comparison; /* comparison.csv */
+    struct output comparison; /* comparison.csv, if files are written */
     const char *experiment;   /* name of the current experiment, at the beginning of each line */
-    /* data of the current experiment as CSV: write to `data`; text [length] has them */
-    FILE *data;
-    char *text;
-    size_t length;
+    FILE *data;               /* of the current experiment as CSV, the header line first */
 };
 
 /* The source of a number that ours is compared with: the paper, or an independent calculation by its method. */
@@ -34,14 +29,7 @@ struct reproduce {
 void reproduce_compare(struct reproduce *reproduce, const char *source, const char *unit, double theirs, double ours,
                        const char *what, ...) __attribute__((format(printf, 6, 7)));
 
-/* The path DIRECTORY/NAME and the ending, to be freed. NULL: no memory. */
-char *reproduce_path(const struct reproduce *reproduce, const char *name, const char *ending);
-
-/* Writes the data of the experiment as NAME.csv, and NAME.svg by a gnuplot script that reads them from $data. script
- * NULL: no picture. Returns a status. */
-int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script);
-
-/* An experiment: writes its data to reproduce->data, the header line first, and compares numbers. Returns a status. */
+/* An experiment: writes its data and compares numbers. Returns a status. */
 typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
