@@ -92,7 +92,7 @@ static const struct {
     {{"factors", MONO, "--wall", "zmin,top"},
      "--wall: 'top' is no wall; there are box, auto, xmin ... zmax, cylinder:X,Y,R, xcylinder:Y,Z,R, ycylinder:X,Z,R "
      "and mesh:FILE"},
-    {{"factors", MONO, "--wall", "zmin=3"}, "--wall: zmin=3 is now zmin:at=3"},
+    {{"factors", MONO, "--wall", "zmin=3"}, "--wall: zmin=3 is not how a wall is written"},
     {{"factors", MONO, "--wall", "zmin:temperature=3"},
      "--wall: zmin: 'temperature' is of no use here; there are at, open"},
     {{"factors", MONO, "--wall", "xmin,xmax,ymin,ymax,zmin"}, "add zmax:open (zmax:open:at=H"},

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 #include "plot/plot_time.h"
@@ -62,7 +63,7 @@ struct time_run {
     uint64_t steps, refused, sweeps, corrections; /* sums over spans, as in fibrad_span */
     double error;                                 /* largest fibrad_span.error */
     struct time_point *point;                     /* [points] of the picture */
-    size_t points, room;
+    size_t points;
     bool failed; /* memory for points ran out */
     struct table_excess excess[TABLES];
     double lag; /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
@@ -79,14 +80,10 @@ static struct time_point point_of(const struct time_run *m, double time, const d
 
 static void note_point(void *time_run, double time, const double *temperature) {
     struct time_run *m = time_run;
-    if (m->points == m->room) {
-        const size_t room = 2 * m->room + 64;
-        struct time_point *point = realloc(m->point, room * sizeof *point);
-        m->failed = m->failed || !point;
-        if (!point) return;
-        m->point = point, m->room = room;
-    }
-    m->point[m->points++] = point_of(m, m->now + time, temperature);
+    bool good = true;
+    m->point = memory_grown(m->point, m->points, sizeof *m->point, &good);
+    m->failed = m->failed || !good;
+    if (good) m->point[m->points++] = point_of(m, m->now + time, temperature);
 }
 
 /* The temperature of a table at a time [K]. Without a table: `otherwise`. */
