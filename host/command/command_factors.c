@@ -317,14 +317,9 @@ static int find_views(struct factors_request *request, const struct bed *bed, fi
         [OUT] = {.name = {"F_surroundings", "F_surroundings_front", "F_surroundings_back"}, .join = mean_of_two}};
     const struct fibrad_triangles *triangles = &request->walls.meshes->triangles;
     const uint32_t sides = 2 * triangles->n;
-    fibrad_fault fault;
     fibrad_side_view *view = malloc(sides * sizeof *view);
     int status = view ? side_arrays_begin(views, triangles, quantity, QUANTITIES) : message_memory();
-    if (!status) {
-        status = fibrad_bed_views(made, view_rays(sides), view);
-        fibrad_bed_describe(made, NULL, &fault);
-        status = bed_options_status(&request->bed, bed, status, &fault);
-    }
+    if (!status) status = bed_options_made(&request->bed, bed, made, fibrad_bed_views(made, view_rays(sides), view));
     for (uint32_t s = 0; s < sides && !status; ++s) {
         views->quantity[TO_SPHERES].side[s] = view[s].spheres;
         views->quantity[OUT].side[s] = view[s].escaped;
