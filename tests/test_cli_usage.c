@@ -277,7 +277,6 @@ TEST(exact_pair_checked) {
     SUCCEED("pair", "1", "0.3", "0.05", "--check");
     const double f12 = value_of("F12");
     ck_assert_double_eq(value_of("kernel"), f12);
-    ck_assert_double_eq_tol(value_of("gsl_polar") / f12, 1, 1e-12);
     ck_assert_double_eq_tol(value_of("gsl_lens") / f12, 1, 1e-12);
     assert_has(printed, "difference");
     const char *last = formatted("\nF12 %.17g\n", f12);
