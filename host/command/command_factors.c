@@ -51,6 +51,9 @@ static int take_targets(const char *text, void *targets) {
     return all ? STATUS_OK : targets_mark(text, NULL, 0, "", NULL);
 }
 
+#define LINES_USED    TEXT_OF(FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls"
+#define EXCHANGE_USED TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT)
+
 static const struct option factors_table[] = {
     {OPTION_EMISSIVITY(struct factors_request, emissivity)},
     {OPTION_WALL},
@@ -82,13 +85,10 @@ static const struct option factors_table[] = {
     OPTIONS_RARE,
     {0, "directions", "N",
      "beam: number of directions, " TEXT_DIRECTIONS
-     "; if all rows are computed, number of lines, which are directions and their opposites; "
-     "the error falls as "
-     "N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(
-         FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres; exchange "
-                                   "factors " TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT) " dire"
-                                                                                          "ction"
-                                                                                          "s]",
+     "; if all rows are computed, number of lines, which are directions and their opposites; the error falls as "
+     "N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " LINES_USED
+                                                   ", more for few spheres; exchange factors " EXCHANGE_USED
+                                                   " directions]",
      TO_COUNT(struct factors_request, beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
     {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",
      TO_TEXT(struct factors_request, areas)},
