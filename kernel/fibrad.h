@@ -325,7 +325,7 @@ typedef struct fibrad_fault {
     int why;                /* a fibrad_why */
 } fibrad_fault;
 
-/* Bytes that fibrad_scene_init needs for n spheres: 5 KB, 52 per sphere, and 8 more per sphere if ids is 1, for
+/* Bytes that fibrad_scene_init needs for n spheres: 5 KB, 53 per sphere, and 8 more per sphere if ids is 1, for
  * fibrad_spheres.id. Triangles need more: fibrad_triangles_size. 0: n is above FIBRAD_SPHERES_MAX. */
 size_t fibrad_scene_size(uint32_t n, int ids);
 
@@ -435,7 +435,7 @@ typedef struct fibrad_row {
     uint32_t length;     /* out: number of entries */
     double escaped;      /* out: fraction that reaches the surroundings, through an opening or past everything */
     double beyond;       /* out: fraction that leaves the cutoff, and whose end is not computed */
-    double error;        /* out: estimated error of the row; in the median it is twice the true error */
+    double error;        /* out: estimated error of the row, not a bound: docs/trust.md */
     uint32_t directions; /* out: number of directions of a row along directions, else 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
@@ -451,7 +451,7 @@ typedef struct fibrad_row {
 /* A set of lines, for the rows of a matrix. A row looks along one of the two directions of each line. These are spread
  * evenly, as the lines are. The factor between two spheres is the mean of both of their rows. So it counts both
  * directions of each line. Walls and surroundings are seen along one direction of each line. If the scene has planes,
- * openings or a cylinder and no triangles, spheres near these walls or near the border of the bed see both. */
+ * openings or a cylinder and no triangles, spheres near these or near the border of the bed look along both. */
 typedef struct fibrad_line_set fibrad_line_set;
 
 /* The number of lines of the smallest set with at least `lines` lines. 0: there is none. There are sets of 8, 11, 16,
@@ -473,14 +473,15 @@ int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint3
 /* The number of lines of a set. NULL: 0. */
 uint32_t fibrad_line_set_count(const fibrad_line_set *set);
 
-/* For fibrad_beam_rule.chords: exact areas; as many chords as suit the number of lines or directions. */
+/* For fibrad_beam_rule.chords. NONE: exact areas. SUITED: the number of chords that suits the number of lines or
+ * directions: 16 up to 80, 32 up to 250, 64 up to 724, exact areas beyond. */
 #define FIBRAD_CHORDS_NONE   1
 #define FIBRAD_CHORDS_SUITED 2
 
 /* How a beam row is computed. Zeroed: FIBRAD_DIRECTIONS_DEFAULT directions, exact areas, no cutoff, no tolerance. */
 typedef struct fibrad_beam_rule {
     uint32_t directions; /* FIBRAD_DIRECTIONS_MIN to FIBRAD_DIRECTIONS_MAX; 0: _DEFAULT, with a tolerance _FIRST */
-    uint32_t points;     /* 64, 128 or 256: that many points per window; 0: see chords */
+    uint32_t points;     /* 64, 128 or 256: so many points in each window, not masks; 0: see chords */
     double cutoff;       /* L; spheres are left out if their centre is farther than (1 + 1e-12) cutoff; 0: no cutoff */
     double tolerance;    /* the error allowed; directions are added until it is met; 0: no tolerance */
     uint64_t turn;       /* seed of a random turn of all directions about z, or about the only axis with walls; each
@@ -495,7 +496,8 @@ typedef struct fibrad_beam_rule {
  * The factor to sphere j is the mean of this fraction over all windows.
  *   exact areas  The fraction is a visible area over the area of the window. The error of the entries falls as
  *                directions^-1.5, that of factors to walls a little more slowly. If sphere i sees no other sphere and
- *                cuts no wall, and there is no cutoff, the factors to planes and to the cylinder are exact.
+ *                cuts no wall, and there is no cutoff, factors to walls are exact: in a cylinder to 4e-7, which `error`
+ *                leaves out, else to rounding.
  *   points       Each point of the window is one ray. The fraction is that of the points that meet sphere j.
  *
  * In a periodic scene, all images of one sphere have one entry together. Sphere i may see its own images. A beam meets
@@ -606,14 +608,14 @@ void fibrad_rows_clear(fibrad_rows *rows);
 int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row);
 
 /* ---- matrix ---------------------------------------------------------------------------------------------------- */
-/* The row of a wall, by fibrad_exchange_wall and fibrad_exchange_wall_mean. Its factors add up to 1. If the emissivity
- * of the wall is 0, all are 0. Paths among surfaces that absorb little end after many rays: the fraction lost is what
- * they still carry then. */
+/* The row of a wall: one batch of fibrad_exchange_wall, or the mean by fibrad_exchange_wall_mean. Its factors add up to
+ * 1. If the emissivity of the wall is 0, all are 0. Paths among surfaces that absorb little end after many rays. The
+ * fraction lost is what they still carry then. */
 typedef struct fibrad_wall_row {
     double wall[FIBRAD_WALLS_MAX]; /* factor to each wall; a batch may have a factor a little below 0, by chance */
     double spheres;                /* factor to all spheres together */
     double escaped;                /* factor to the surroundings */
-    double error;                  /* in the mean: the estimated error; in a batch: the fraction lost, see above */
+    double error;                  /* of the mean: the estimated error; of a batch: the fraction lost, see above */
     uint64_t rays;                 /* rays traced */
     uint64_t paths;                /* paths followed; of the mean: those of all batches */
 } fibrad_wall_row;
@@ -674,7 +676,7 @@ typedef struct fibrad_factors {
 typedef struct fibrad_matrix fibrad_matrix; /* a matrix in the making */
 
 /* Bytes that fibrad_matrix_init needs: 24 for each entry of the rows, or 32 if all rows are along lines, and 104 + 8 b
- * for each sphere, b being the number of walls. With `raw` 12 for each entry, 48 + 8 b for each sphere. 0: error. */
+ * for each sphere, b being the number of walls. With `raw` 12 for each entry, 56 + 8 b for each sphere. 0: error. */
 size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
                           const fibrad_matrix_rule *rule);
 
@@ -727,9 +729,9 @@ int fibrad_matrix_reciprocity(const fibrad_matrix *matrix, double *largest);
  * points per window up to 49 directions, with 256 up to 144, with exact areas beyond. Paths follow what is reflected.
  *
  * Further paths may be followed elsewhere, and their results given as `known`. Paths that begin at walls
- * (fibrad_exchange_wall) can take the place of further paths. Let a wall have the area A_b and the emissivity e_b. If
- * sphere i absorbs x of n paths from this wall, then the wall absorbs x of n A_i e_i/(A_b e_b) further paths of sphere
- * i. If spheres conduct, e_i is node_emissivity. */
+ * (fibrad_exchange_wall) can take the place of further paths. Let a wall have the area A_b and the emissivity e_b. Let
+ * sphere i absorb x of n paths from this wall. They stand for m = n A_i e_i/(A_b e_b) further paths of sphere i, of
+ * which the wall absorbs x. If spheres conduct, e_i is node_emissivity. */
 typedef struct fibrad_exchange_rule {
     const double *emissivity;      /* [spheres], 0 to 1 */
     const double *wall_emissivity; /* [walls], 0 to 1; NULL without walls */

@@ -35,7 +35,7 @@ typedef struct fibrad_heat_config {
     uint32_t directions; /* of each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
     uint32_t points;     /* of each direction, where beams begin: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */
     uint32_t patches;    /* of each sphere: 24, 96 or 384; 0: FIBRAD_HEAT_PATCHES_DEFAULT */
-    uint32_t parts;      /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; results depend on it by rounding; 0: _DEFAULT */
+    uint32_t parts;      /* of a sweep, 1 to FIBRAD_HEAT_PARTS_MAX; changes results by rounding; 0: _DEFAULT */
     uint32_t wall_rays;  /* least number of rays from all walls together, at most FIBRAD_WALL_RAYS_MAX; 0: see above */
 } fibrad_heat_config;
 
@@ -66,8 +66,8 @@ int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad
  *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
-/* Has the first solution of a new problem start from the last one of another problem of the same scene. A surface that
- * has another number of patches starts from the mean of its radiosities.
+/* Starts the first solution of a new problem from the last one of another problem of the same scene. A surface that has
+ * another number of patches starts from the mean of its radiosities.
  *   Errors   _ARGUMENT
  *            _STATE: `last` has no solution, or is of another scene; the new problem starts anew */
 int fibrad_heat_resume(fibrad_heat *heat, const fibrad_heat *last);
@@ -212,6 +212,7 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
  * sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they were found or
  * given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact; or only a temperature below
  * zero would give the power.
+ *
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean
  * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
@@ -252,8 +253,8 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result);
 
 /* Reads the solution on the sides of triangles: element 2 t is the front and 2 t + 1 the back of the caller's triangle
  * t. A value is the mean over the patches of the side. Sides that share a patch have equal values. If no plane and no
- * cylinder cuts a mesh, its flux times area, summed over its sides, is to rounding wall_power; if the mesh is not
- * insulated and sources.absorbed is set, wall_power plus the light that the mesh absorbs.
+ * cylinder cuts a mesh, its flux times area, summed over its sides, is wall_power to rounding. If the mesh is not
+ * insulated and sources.absorbed is set, this sum is wall_power plus the light that the mesh absorbs.
  *   Output   flux[2 triangles]: net power per area [sigma K^4]; may be NULL. NaN: the side belongs to no wall, or no
  *            beam and no ray reaches it.
  *            temperature[2 triangles]: [K]; may be NULL. NaN: the side belongs to no wall, its wall has no

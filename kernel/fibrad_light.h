@@ -130,8 +130,8 @@ typedef struct fibrad_light_ray {
     uint32_t slot; /* where it would end if there were neither spheres nor triangles; a number inside the kernel */
 } fibrad_light_ray;
 
-/* Number of rays for a light: 12 for each beam of a sphere, and 1/16 for each beam of each sphere in the light. There
- * are 131,072 rays at least, and 2^24 at most.
+/* Number of rays for a light. If each sphere has b beams (directions times points), there are 12 b rays, and b/16 more
+ * for each sphere in the light, but 131,072 at least and 2^24 at most.
  *   Input    hits[fibrad_heat_patches]: of fibrad_heat_shine
  *   Errors   0 if an argument is NULL */
 uint32_t fibrad_heat_light_rays(const fibrad_heat *heat, const double *hits);

@@ -1,12 +1,17 @@
 /* fibrad_host.h - fibrad with a heap and OpenMP: a bed, and what is asked of it.
  *
- * Index
- *   run      fibrad_run: threads, progress, cancelling
- *   bed      fibrad_bed_new, _move, _describe, _warnings, _free
- *   factors  fibrad_bed_factors, fibrad_bed_matrix_free, fibrad_bed_wall_row, fibrad_view_factors
- *   heat     fibrad_bed_beams, _solve, _sides, _shine, _advance
- *   contacts fibrad_bed_contacts, fibrad_contacts_conduct
- *   kernel   fibrad_heap_resize, fibrad_host_sizeof
+ * Index      what for                                       functions and types
+ *   run      threads, progress, cancelling                  fibrad_run
+ *   bed      spheres and walls: made, moved, freed          fibrad_bed_new, _move, _free
+ *            facts, where an error is, probable mistakes    fibrad_bed_describe, _warnings
+ *   factors  view factors and exchange factors of a bed     fibrad_bed_factors, fibrad_bed_matrix_free
+ *            one wall's row; a bed's factors in one call    fibrad_bed_wall_row, fibrad_view_factors
+ *   heat     net powers and temperatures                    fibrad_bed_solve; fibrad_bed_sides: of triangles
+ *            numbers of directions, points and patches      fibrad_bed_beams
+ *            light from outside, first hits included        fibrad_bed_shine
+ *            temperatures in time                           fibrad_bed_advance
+ *   contacts which spheres touch, and what they conduct     fibrad_bed_contacts, fibrad_contacts_conduct
+ *   kernel   memory of the heap, sizes of structures        fibrad_heap_resize, fibrad_host_sizeof
  *
  * Example   fibrad_bed *bed;
  *           fibrad_bed_matrix *factors = NULL;
@@ -44,27 +49,27 @@ extern "C" {
 /* A function of the caller that shows progress. The thread that made the call runs this function at the beginning and
  * the end of each stage, and up to 20 times a second in between.
  *   Input    context: fibrad_run.context
- *            stage: "walls", "rows", "triangles", "beams", "sweeps" or "steps"
+ *            stage: "walls", "rows", "triangles", "beams", "sweeps", "light", "rays of light" or "steps"
  *            done: number of things done
  *            total: number of all things; 0: it cannot be said
  *   Output   0 to go on; else the call stops and returns FIBRAD_E_CANCELLED */
 typedef int fibrad_progress(void *context, const char *stage, uint64_t done, uint64_t total);
 
-/* How a call runs. NULL or zeroed: OpenMP's threads, no progress. */
+/* How the calls of a bed run. NULL or zeroed: OpenMP's threads, no progress. */
 typedef struct fibrad_run {
     int threads;               /* 1 to 1024; 0: OMP_NUM_THREADS, or else all processors, at most 1024 */
     fibrad_progress *progress; /* NULL: none */
     void *context;             /* handed to progress */
-    fibrad_fault fault;        /* out: where an error is */
+    fibrad_fault fault;        /* out: where an error of fibrad_bed_new or fibrad_view_factors is */
 } fibrad_run;
 
 /* ---- bed ------------------------------------------------------------------------------------------------------- */
 
-/* A bed: spheres, walls, openings and periods. The bed makes its scene, its threads, beams and lists of contacts when
- * they are first needed, and keeps them. */
+/* A bed: spheres, walls, openings and periods. fibrad_bed_new makes its scene. Beams are traced when they are first
+ * needed. The bed keeps scene and beams until fibrad_bed_move. */
 typedef struct fibrad_bed fibrad_bed;
 
-/* Makes a bed. Positions, radii, ids, walls and triangles are copied.
+/* Makes a bed. All is copied but an occupancy (fibrad_scene_config), which must stay as it is.
  *   Input    config: NULL: open on all sides, no walls
  *            run: NULL for all defaults; threads, progress and context are kept for later calls
  *   Output   bed: free with fibrad_bed_free
@@ -84,23 +89,23 @@ int fibrad_bed_move(fibrad_bed *bed, const fibrad_scene_config *config, const fi
  *   Errors   none */
 void fibrad_bed_describe(const fibrad_bed *bed, fibrad_scene_facts *facts, fibrad_fault *fault);
 
-/* What in a bed, in its factors or in its sources is probably a mistake. Results are computed all the same. The fields
- * of fibrad_warning that a code uses are in its comment. */
+/* What in a bed, in its factors or in its sources is probably a mistake. Results are computed all the same. `first`,
+ * `second`, `wall`, `count`, `value` and `other` are the fields of fibrad_warning that a code uses. */
 typedef enum fibrad_warning_code {
-    FIBRAD_WARNING_OVERLAP = 1,    /* spheres first and second overlap by value, above .05, of the smaller radius; their
-                                      factors err by about other */
-    FIBRAD_WARNING_CUT = 2,        /* sphere first reaches through wall, a plane or cylinder, by value, above .1, of its
-                                      radius; count spheres do so */
-    FIBRAD_WARNING_MESH_SIZE = 3,  /* wall is value long and the bed other: 200 times more or less */
-    FIBRAD_WARNING_MESH_PLACE = 4, /* wall lies from value to other along axis first, away from the bed */
-    FIBRAD_WARNING_COLD = 5,       /* no sphere is warmer than value, below 150 K: degrees Celsius? */
-    FIBRAD_WARNING_ZERO = 6,       /* sphere first, one of count, has 0 K; others have up to value */
-    FIBRAD_WARNING_AROUND = 7,     /* wall, or the surroundings, have value, 5 to 75 K: degrees Celsius? */
-    FIBRAD_WARNING_SURFACE = 8,    /* part of the surface of sphere first comes out at value, below 0 K */
-    FIBRAD_WARNING_STORE = 9,      /* sphere first stores value J/(m3 K), if L is the metre: no solid does */
-    FIBRAD_WARNING_OPEN_ROWS = 10, /* sums of rows of walls are off by value */
-    FIBRAD_WARNING_APART = 11,     /* rows of walls and of spheres disagreed by value before they were closed */
-    FIBRAD_WARNING_CHANGED_ROW = 12 /* closing has changed row first, by value times its error */
+    FIBRAD_WARNING_OVERLAP = 1,     /* Spheres `first` and `second` overlap by `value` smaller radii, above .05. Factors
+                                       of the smaller one err by about `other`. */
+    FIBRAD_WARNING_CUT = 2,         /* Sphere `first` reaches through `wall`, a plane or cylinder, by `value` radii.
+                                       `count` spheres reach through one by more than .1. */
+    FIBRAD_WARNING_MESH_SIZE = 3,   /* `wall` has the length `value` and the bed `other`: 200 times more or less. */
+    FIBRAD_WARNING_MESH_PLACE = 4,  /* `wall` lies from `value` to `other` along axis `first`, away from the bed. */
+    FIBRAD_WARNING_COLD = 5,        /* The warmest sphere has `value`, below 150 K: degrees Celsius? */
+    FIBRAD_WARNING_ZERO = 6,        /* Sphere `first`, one of `count`, has 0 K. Others have up to `value`. */
+    FIBRAD_WARNING_AROUND = 7,      /* `wall`, or the surroundings, have `value`, 5 to 75 K: degrees Celsius? */
+    FIBRAD_WARNING_SURFACE = 8,     /* The coldest place of sphere `first` comes out at `value`, below 0 K. */
+    FIBRAD_WARNING_STORE = 9,       /* Sphere `first` stores `value` J/(m3 K), if L is the metre: no solid does. */
+    FIBRAD_WARNING_OPEN_ROWS = 10,  /* Sums of rows of walls differ from 1 by `value`. */
+    FIBRAD_WARNING_APART = 11,      /* Sums of rows of walls differed from 1 by `value` before they were closed. */
+    FIBRAD_WARNING_CHANGED_ROW = 12 /* Closing has changed row `first` by `value` times its error. */
 } fibrad_warning_code;
 #define FIBRAD_WARNINGS_MAX 12
 
@@ -126,12 +131,14 @@ void fibrad_bed_free(fibrad_bed *bed);
 /* Which rows of a bed are computed, and how. NULL or zeroed: view factors, all rows, reciprocal and closed. At most one
  * of beam, cast and exchange is set.
  *
- * Rows go along lines if all rows are wanted, raw is 0, and the rule is a beam rule or NULL. The number of lines is
- * then beam->directions, at most FIBRAD_LINES_EVEN_MAX. It is raised to the next set. 0 stands for
- * FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS. Scenes of few spheres have more: 40,000 over the
- * number of spheres. The field `points` then stands for masks: 64, 128 and 256 for 16, 32 and 64 chords. With more than
- * 1,536, and in all other cases, rows go along directions. So they do among triangles if there are more
- * than 171 spheres; masks serve there, too. docs/methods.md section 12.
+ * Lines or directions. View factors by beams go along lines if all rows are wanted, `raw` and beam->turn are 0, and
+ * beam->directions is at most 1,536. Otherwise rows go along directions. So they do among triangles if there are more
+ * than 170 spheres. docs/methods.md section 12.
+ *
+ * Along lines, beam->directions is the number of lines, raised to the next set, at most FIBRAD_LINES_EVEN_MAX. 0 stands
+ * for FIBRAD_LINES_DEFAULT, or among walls for FIBRAD_LINES_AMONG_WALLS, or for 40,000 over the number of spheres if
+ * this is more. Masks serve up to 724 lines, exact areas beyond. beam->chords chooses otherwise. beam->points of 64,
+ * 128 and 256 stand for masks of 16, 32 and 64 chords. Directions among triangles have the same numbers and masks.
  *
  * A tolerance in the beam rule raises the number of lines or directions. If raw is 0, it is the same number for all
  * rows, so that the worst row meets the tolerance. If raw is 1, each row has the number of directions that it needs.
@@ -139,8 +146,8 @@ void fibrad_bed_free(fibrad_bed *bed);
  * Rows of walls are computed if walls is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
- * Raw rows are those before averaging. Files in the scratch folder take bytes for each entry of the raw rows. Rows
- * along lines have 16 for the row and 32 for the matrix. Other rows have 12 and 24. The files of the rows may be up to
+ * Raw rows are those before averaging. Files in the scratch folder take 48 bytes for each entry of raw rows along
+ * lines: 16 for the rows and 32 for the matrix. Entries of other rows take 36: 12 and 24. Files of rows may be up to
  * twice as large. */
 typedef struct fibrad_bed_rule {
     const fibrad_beam_rule *beam;         /* NULL: the defaults, unless cast or exchange is set */
@@ -187,8 +194,8 @@ void fibrad_bed_matrix_free(fibrad_bed_matrix *matrix);
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres, const fibrad_bed_rule *rule,
                         fibrad_run *run, fibrad_bed_matrix **matrix);
 
-/* The row of one wall or opening: fibrad_exchange_wall and fibrad_exchange_wall_mean. The number of paths is doubled
- * until the error is at most `tolerance`, up to 2^24 paths.
+/* The row of one wall or opening: fibrad_exchange_wall and fibrad_exchange_wall_mean. The number of paths grows until
+ * the error is at most `tolerance`, up to 2^24 paths.
  *   Input    wall: as in fibrad_exchange_wall
  *            rule: needed
  *            tolerance: 0: any error is allowed
@@ -200,8 +207,8 @@ int fibrad_bed_wall_row(fibrad_bed *bed, uint32_t wall, const fibrad_wall_rule *
 
 /* ---- heat ------------------------------------------------------------------------------------------------------ */
 
-/* How finely heat is resolved from now on (fibrad_heat.h), and traces the beams. The next solution begins with the last
- * one. Without this call, the first call that needs beams takes the defaults.
+/* Sets how finely heat is resolved from now on (fibrad_heat.h), and traces the beams. The next solution begins with the
+ * last one. Without this call, the first call that needs beams takes the defaults.
  *   Input    config: NULL for all defaults; `parts` is always 16
  *   Errors   as fibrad_heat_init and fibrad_heat_trace; _CANCELLED
  *   Cost     that of the traces over the threads; none if the beams are there
@@ -209,7 +216,7 @@ int fibrad_bed_wall_row(fibrad_bed *bed, uint32_t wall, const fibrad_wall_rule *
 int fibrad_bed_beams(fibrad_bed *bed, const fibrad_heat_config *config);
 
 /* A function of the caller: emissivities that depend on temperatures. The thread that made the call runs this function.
- * A temperature is NaN if it has not been found yet, if the wall is insulated, or if the emissivity is 0. The function
+ * A temperature is NaN if it has not been found yet, or if the surface has none, as at emissivity 0. The function
  * leaves such an emissivity as it is.
  *   Input    temperature[spheres], wall_temperature[walls]: [K]
  *   Output   emissivity[spheres], wall_emissivity[walls]: 0 to 1 */
@@ -272,9 +279,9 @@ typedef struct fibrad_light_result {
 } fibrad_light_result;
 
 /* What a bed absorbs of light from outside. All elements of `absorbed` and `wall_absorbed`, `reflected` and
- * `transmitted` add up to `incident`, to rounding. No surface absorbs less than of the light that it meets first. Where
- * the solution by patches says so, by its error, what surfaces absorb after reflections and what leaves are scaled. The
- * elements of `patches` are not scaled: for each surface they add up to what the solution says.
+ * `transmitted` add up to `incident`, to rounding. By its error, a solution by patches may give a surface less than
+ * absorbed_first. The surface then has absorbed_first, and what others absorb after reflections and what leaves are
+ * scaled. The elements of `patches` are not scaled: for each surface they add up to what the solution says.
  *
  * Absorbed light heats a surface. If the temperature of the surface is given, add the absorbed light to the net power
  * in the result of fibrad_bed_solve. If the temperature is to be found, add it to the power in the sources.
@@ -324,9 +331,9 @@ typedef struct fibrad_span {
  * limit the step. The energy that spheres lose by radiation is what walls and surroundings gain, to rounding. The first
  * automatic step of a span is as long as the last span has proposed.
  *
- * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches, which
- * correct the factors from time to time. Patches serve alone if there is a law, if spheres conduct, if there are
- * contacts, or if the temperature of a wall is to be found.
+ * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
+ * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
+ * if there are contacts, or if the temperature of a wall is to be found.
  *
  *   field of sources                    use
  *   temperature, storage, reference     not used
@@ -349,13 +356,13 @@ int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibr
 
 /* ---- contacts --------------------------------------------------------------------------------------------------- */
 
-/* How large the spot is at which two spheres that overlap, or a sphere and a wall, touch. a is its radius, R the radius
- * of a sphere, D the overlap and x the distance of the centre from the plane of the spot.
+/* Two spheres that overlap, or a sphere and a wall, touch at a spot. This says how large the spot is. Let a be its
+ * radius, R the radius of a sphere, D the overlap and x the distance of the centre from the plane of the spot.
  *
  *   LENS    the circle in which the surfaces cut each other: a^2 = R^2 - x^2
  *   HERTZ   that of elastic spheres: a^2 = R_ij D with 1/R_ij = 1/R_i + 1/R_j; for a wall R_ij = R_i
  *
- * The lens of equal spheres is 1.41 times as large as Hertz's spot. */
+ * The radius of the lens of equal spheres is 1.41 times that of Hertz's spot. */
 typedef enum fibrad_spots { FIBRAD_SPOTS_NONE = 0, FIBRAD_SPOTS_LENS = 1, FIBRAD_SPOTS_HERTZ = 2 } fibrad_spots;
 
 /* Which contacts are found, and what they conduct. Zeroed: none. */
@@ -368,7 +375,7 @@ typedef struct fibrad_contact_rule {
     int gas_alone;    /* 1: lines lead through gas alone, not through solid; for spheres that conduct themselves */
 } fibrad_contact_rule;
 
-/* Contacts of a bed. A pair that touches across a period, too, has several. Ends are as in fibrad_heat_sources. */
+/* Contacts of a bed. A pair that also touches across a period has several. Ends are as in fibrad_heat_sources. */
 typedef struct fibrad_contact_list {
     uint32_t n;                     /* number of contacts */
     const uint32_t *first, *second; /* [n], a sphere; a sphere, or `spheres` plus a wall */
@@ -378,8 +385,8 @@ typedef struct fibrad_contact_list {
 } fibrad_contact_list;
 
 /* Finds spheres that touch each other or walls, or that are near enough for gas to conduct. Walls are planes, the
- * cylinder and the fronts and backs of triangles. A sphere touches a wall of triangles once for each place that is
- * nearest to it.
+ * cylinder and the fronts and backs of triangles. A sphere touches a wall of triangles at the place that is nearest to
+ * its centre. In a corner it touches each face.
  *   Output   list: the bed's, until the next fibrad_bed_contacts, _move or _free
  *   Errors   _ARGUMENT
  *   Cost     0.5 microseconds for each sphere within reach */
