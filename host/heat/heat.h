@@ -157,8 +157,8 @@ int heat_in_time(struct heat *heat);
  * there is no open face or one has no end. */
 int face_begin(struct heat *heat, struct walls *opened);
 
-/* Finds area and emissivity of the face. By Kirchhoff's law it is the fraction of black radiation from outside that spheres
- * and walls absorb: paths from the open faces tell it. Status 0, or as bed_options_status. */
+/* Finds area and emissivity of the face. By Kirchhoff's law it is the fraction of black radiation from outside that
+ * spheres and walls absorb: paths from the open faces tell it. Status 0, or as bed_options_status. */
 int face_solve(struct heat *heat);
 void face_report(struct heat *heat);
 

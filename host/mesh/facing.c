@@ -8,13 +8,11 @@
 #include <stdlib.h>
 
 #include "cli/message.h"
-#include "simple/contact_list.h"
+#include "simple/nearest.h"
 
 #define TIED 1e-9 /* relative difference of squared distances that count as equal */
 enum { VOTERS_MOST = 1000, VOTERS_LEAST = 50 };
 #define VOTES_MOST 2e7 /* distances from a sphere to a triangle, in all */
-
-static double product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /* A ball about a triangle. */
 struct ball {
@@ -45,13 +43,13 @@ static bool to_triangle(const struct surface *surface, uint32_t triangle, const 
     for (int k = 0; k < 3; ++k)
         for (int axis = 0; axis < 3; ++axis) corner[k][axis] = surface_corner(surface, triangle, k)[axis] - p[axis];
     surface_normal(surface, triangle, normal);
-    const double distance = fibrad_nearest_on_triangle(corner, to, &inside), depth = product(normal, corner[0]);
+    const double distance = nearest_on_triangle(corner, to, &inside), depth = inner(normal, corner[0]);
     *found = (struct nearest){.square = distance * distance,
                               .side = depth < 0   ? 1
                                       : depth > 0 ? -1
                                                   : 0,
                               .edge = !inside};
-    return product(normal, normal) > 0;
+    return inner(normal, normal) > 0;
 }
 
 /* Updates the nearest triangles with one more triangle. In a periodic bed the nearest image of the point counts. */
@@ -125,7 +123,7 @@ double facing_volume(const struct surface *surface, const struct component *comp
         const uint32_t t = surface->in_components[k];
         const double *at = surface_corner(surface, t, 0);
         surface_normal(surface, t, normal);
-        const double six = product(normal, (const double[]){at[0] - from[0], at[1] - from[1], at[2] - from[2]});
+        const double six = inner(normal, (const double[]){at[0] - from[0], at[1] - from[1], at[2] - from[2]});
         volume += (surface->turned[t] ? -six : six) / 6;
     }
     return volume;

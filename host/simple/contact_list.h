@@ -41,10 +41,6 @@ struct triangle_search {
     double period[3]; /* 0: none */
 };
 
-/* The point of a triangle that is nearest to the origin. corner[3]: relative to the origin. *inside: the point lies on
- * no edge. Returns its distance. */
-double fibrad_nearest_on_triangle(double corner[3][3], double to[3], bool *inside);
-
 /* Adds contacts of spheres with walls of triangles. Status 0 or FIBRAD_E_MEMORY. */
 int fibrad_contact_triangles(const struct fibrad_triangles *triangles, const struct triangle_search *search,
                              struct contact_block *block);
