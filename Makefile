@@ -364,7 +364,7 @@ SANITIZED = $(MAKE) -s --no-print-directory BUILD=$(BUILD)/sanitized ISAS="$(SAN
 
 ## sanitized: tests of memory, protocols and readers under the address and undefined behaviour sanitizers
 OF_MEMORY = bed_make beyond wall_rows curve flow heat_arguments matrix matrix_calls part plot protocol protocol_heat read \
-            read_furnace row_parts scene status work write
+            read_furnace scene status work write
 sanitized:
 	+@LSAN_OPTIONS=suppressions=tests/leaks.txt:print_suppressions=0 CK_FORK=no \
 	    $(SANITIZED) TESTS="$(OF_MEMORY:%=tests/test_%.c)" run-programs

@@ -223,9 +223,9 @@ static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const
     if (known != NULL) {
         if (!known->open) meet_known(paths, known, &hit);
     } else if (path->place != FIBRAD_NONE) {
-        LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
+        LANED(fibrad_trace)(scene, paths->tracer, path->place, path->n, w, &hit);
     } else {
-        LANED(fibrad_trace_wall)(paths->tracer, path->point, w, path->triangle, &hit);
+        LANED(fibrad_trace_point)(scene, paths->tracer, path->point, w, path->triangle, &hit);
     }
     if (hit.sphere != FIBRAD_NONE && is_within(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
@@ -483,7 +483,7 @@ static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobo
         path.sobol = sobol[b];
         start_at_wall(paths, &path);
         direction_about(path.n, point, w);
-        LANED(fibrad_trace_point)(scene, path.point, w, FIBRAD_NO_SIDE, &hit);
+        LANED(fibrad_trace_point)(scene, NULL, path.point, w, FIBRAD_NO_SIDE, &hit);
         paths->rays++;
         const uint32_t wall = fibrad_surroundings_met(scene, path.point, w, __builtin_inf(), &distance);
         if (hit.sphere == FIBRAD_NONE)

@@ -171,11 +171,11 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
     for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
     const uint32_t behind = fibrad_walls_behind(heat->scene, work->place, n, origin);
-    if (behind != FIBRAD_NONE) return fibrad_heat_cap_patch(heat, behind, origin);
+    if (behind != FIBRAD_NONE) return fibrad_heat_wall_patch(heat, behind, origin, false);
     if (work->met != NULL && work->met->any &&
         (work->met->aside[0][p] != 0 || work->met->aside[1][p] != 0)) { /* on the line that meets no triangle */
         LANED(fibrad_mesh_line)(work, frame, p, origin, w);
-        return fibrad_heat_leaves(heat, origin, w);
+        return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
     }
     const uint32_t other = fibrad_points_partner(heat->config.points, p, k);
     const double a = set->x[other], b = set->y[other];
@@ -188,7 +188,7 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
         origin[axis] = work->centre[axis] + work->unit * n[axis];
         w[axis] = g + (du * e + dv * f);
     }
-    return fibrad_heat_leaves(heat, origin, w);
+    return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
 }
 
 /* Keeps the beams of a word of window k that meet spheres. Returns the end of the beams that are kept. */
@@ -311,10 +311,11 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     const bool starts = slot < FIBRAD_WALLS ? fibrad_heat_wall_ray(heat, slot, k, origin, w)
                                             : fibrad_heat_mesh_ray(heat, slot - FIBRAD_MESHES, k, origin, w, &side);
     if (!starts) return FIBRAD_OK;
-    LANED(fibrad_trace_point)(heat->scene, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
+    LANED(fibrad_trace_point)
+    (heat->scene, NULL, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
     if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
-    ray->from =
-        slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin) : fibrad_heat_mesh_patch(heat, side, origin);
+    ray->from = slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin, true)
+                                    : fibrad_heat_mesh_patch(heat, side, origin);
     if (fibrad_heat_fine_of(heat, ray->from) != FIBRAD_NONE) return FIBRAD_OK; /* these have rays of their own */
     ray->to = fibrad_heat_ends(heat, origin, w, hit.side, hit.distance);
     if (ray->to == FIBRAD_NONE) {
@@ -339,13 +340,13 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
     const uint32_t behind = sphere ? fibrad_walls_behind(scene, body, ray->normal, at) : FIBRAD_NONE;
     beam->from = (uint16_t)ray->patch;
     if (behind != FIBRAD_NONE) {
-        *next = keep_other(heat, work, ray->k, beam->from, fibrad_heat_cap_patch(heat, behind, at), true, beam);
+        *next = keep_other(heat, work, ray->k, beam->from, fibrad_heat_wall_patch(heat, behind, at, false), true, beam);
         return true;
     }
     if (sphere)
-        LANED(fibrad_trace_once)(scene, body, ray->normal, ray->direction, &hit);
+        LANED(fibrad_trace)(scene, NULL, body, ray->normal, ray->direction, &hit);
     else
-        LANED(fibrad_trace_point)(scene, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
+        LANED(fibrad_trace_point)(scene, NULL, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
     if (hit.sphere != FIBRAD_NONE && !sphere && hit.distance == 0 && scene->container.cuts) return true;
     *next = beam + 1;
     if (hit.sphere != FIBRAD_NONE) {

@@ -321,6 +321,16 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
     }
 }
 
+/* Adds a window of which the fields from `k` to `slope` are set, but for the grids. */
+static void share_window(fibrad_workspace *work, const double frame[9], const fibrad_points *points,
+                         const fibrad_window_set *set, fibrad_wall_window *window) {
+    fibrad_wall_room *walls = work->walls;
+    for (int n = 0; n < 3; n++) window->grid[n] = fibrad_grid_of(set->middle[n], window->k);
+    fibrad_wall_window_begin(window, &walls->view, frame);
+    if (!fibrad_wall_window_simple(window, &walls->view, set->mixed, &walls->sums))
+        share_by_lines(work, points, window);
+}
+
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                const fibrad_window_set *set, double rest, double whole) {
     if (rest == 0) {
@@ -328,7 +338,6 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         return;
     }
     fibrad_wall_window window = {.k = k, .n = set->directions, .open = rest, .part = 1};
-    for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
     window.weight = whole / set->whole;
     window.end = work->entries.end;
     window.parallel = work->parallel;
@@ -338,9 +347,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
-    fibrad_wall_window_begin(&window, &work->walls->view, frame);
-    if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))
-        share_by_lines(work, points, &window);
+    share_window(work, frame, points, set, &window);
 }
 
 /* Adds to `all` of the regions what hidden windows would see. */
@@ -352,11 +359,8 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
         fibrad_wall_window window = {.k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
-        for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
         window.end = set->ends && (k == 0 || k == set->directions - 1);
-        fibrad_wall_window_begin(&window, &work->walls->view, frame);
-        if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))
-            share_by_lines(work, all, &window);
+        share_window(work, frame, all, set, &window);
     }
 }
 
