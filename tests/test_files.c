@@ -639,16 +639,6 @@ TEST(furnace_outputs) {
     expect_message(csv, "is given twice");
 }
 
-TEST(versions_and_help) {
-    SUCCEED("-V");
-    assert_begins(printed, "fibrad ");
-    SUCCEED("help");
-    assert_has(printed, "Commands:");
-    SUCCEED("help", "heat");
-    assert_has(printed, "--emissivity");
-    FAIL_WITH(2, "help", "nothing");
-}
-
 /* If a run is killed, it leaves nothing behind, on systems where files need no name until they are complete. */
 TEST(nothing_is_left_by_what_is_killed) {
     char place[] = "/tmp/fibrad_killed_XXXXXX", path[64];

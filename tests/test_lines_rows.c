@@ -287,7 +287,7 @@ static void same_row(const fibrad_factors *a, const fibrad_factors *b, uint32_t 
 LOOP_TEST(same_bits_in_any_order, BEDS) {
     static const uint32_t chords[] = {FIBRAD_CHORDS_NONE, 16, 32, 64};
     OWNED_BED bed = beds[_i]();
-    struct bed other = bed_empty();
+    OWNED_BED other = bed_empty();
     OWNED uint64_t *id = calloc(bed.n, sizeof *id), *other_id = calloc(bed.n, sizeof *id);
     OWNED uint32_t *place = calloc(bed.n, sizeof *place);
     memcpy(other.period, bed.period, sizeof bed.period);
@@ -314,7 +314,6 @@ LOOP_TEST(same_bits_in_any_order, BEDS) {
                 for (uint32_t i = 0; i < bed.n; i++) same_row(&first.factors, &m.factors, i, place);
         }
     }
-    bed_free(&other);
 }
 
 /* The matrix does not depend on the collections that its rows lie in, nor on tasks. Collections keep the halves. */

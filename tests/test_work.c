@@ -129,7 +129,7 @@ TEST(one_work_serves_all_scenes_and_functions) {
     fibrad_work growing = work_growing(), fixed = work_fixed(block, size), little = work_fixed(NULL, 0);
     OWNED_BY(output_free) struct output out = output_of();
     uint32_t at = 0;
-    for (int round = 0; round < 200; round++) {
+    for (int round = 0; round < 100; round++) {
         at = at * 1664525u + 1013904223u;
         const int k = (int)((at >> 29) % SCENES), function = (int)((at >> 20) % FUNCTIONS);
         const uint32_t i = (at >> 8) % bed[k].n;
