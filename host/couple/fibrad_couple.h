@@ -125,12 +125,13 @@ typedef struct fibrad_insitu_config {
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
 typedef struct fibrad_insitu_bed {
-    double low[3], high[3];                   /* L, the box, used along periodic axes only */
+    double low[3], high[3];                   /* L, the box, used along periodic axes and for openings */
     int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
     const fibrad_wall *wall;                  /* [walls], walls; a particle beyond one is a stray, see above */
     const double *wall_emissivity;            /* [walls], 0 to 1 */
     uint32_t walls;                           /* number of walls, 0 to FIBRAD_WALLS_MAX */
-    const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
+    const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end; infinite: at the end of
+                                                 the box, or where the particles end if that is farther out */
     uint32_t openings;                        /* 0 to 6 */
     const struct fibrad_triangles *triangles; /* of all meshes, repeated along periodic axes; NULL: none */
     size_t n;                                 /* number of particles that this rank owns */

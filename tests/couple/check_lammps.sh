@@ -176,6 +176,9 @@ run 1 lid mesh.lmp data "$work/quarter.data" walls "$sides wall zmax temperature
 run 2 rim mesh.lmp data "$work/quarter.data" walls "$sides wall zmax open" shown "$gained f_rad[1]"
 test -n "$(grep -A1 '^ *Step' "$work/rim.log")" && near "$work/lid.out" "$work/open1.out" 1e-10 "a bed without a lid" &&
     near "$work/open1.out" "$work/open2.out" 1e-10 "a bed without a lid, np 1 and 2"
+top=$(awk '/zlo zhi/ { print $2 }' "$work/quarter.data")
+run 2 face mesh.lmp data "$work/quarter.data" walls "$sides wall zmax open at $top" shown "$gained f_rad[1]"
+near "$work/face.out" "$work/rim.out" 1e-300 "an opening lies at the face of the box, $top"
 grep -q 'f_rad: \[1\] surroundings by opening zmax,.*, \[10\] wall zmin, \[11\] outside.*, \[18\] T of wall zmin' "$work/rim.log"
 verdict "elements of the output are named" $?
 run 1 endless mesh.lmp data "$work/quarter.data" walls "$sides" shown "$gained"

@@ -199,6 +199,10 @@ bool radiation_place(struct radiation *r, const double low[3], const double high
             return refuse(r, "wall %s: the box has no fixed end there; say where, at=POS", w->word);
         r->wall[k].plane.at = (upper ? high : low)[axis];
     }
+    for (uint32_t k = 0; k < r->openings; ++k) {
+        fibrad_plane *opening = &r->opening[k];
+        if (isnan(opening->at) && boundary[opening->axis][opening->upper] == 1) opening->at = INFINITY;
+    }
     return true;
 }
 

@@ -83,7 +83,7 @@ bool radiation_add_wall(struct radiation *r, const struct wall_words *words);
 /* Checks the options and makes the walls. Sides of `box` along periodic axes are left out. */
 bool radiation_begin(struct radiation *r, MPI_Comm comm, const int periodic[3]);
 
-/* Puts planes at the ends of a box. boundary: as LAMMPS has it, 1: the end is fixed. */
+/* Puts planes and openings at the ends of a box. boundary: as LAMMPS has it, 1: the end is fixed. */
 bool radiation_place(struct radiation *r, const double low[3], const double high[3], const int periodic[3],
                      const int boundary[3][2]);
 
