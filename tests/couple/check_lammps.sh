@@ -559,6 +559,14 @@ fails "particle.* 10 .*inside" "a centre inside another particle" also "set atom
 fails "beyond wall 1, zmin" "a centre beyond a wall" floor "zmin temperature 1000 emissivity 0.9 at 1" strict yes
 fails "rad and bad both radiate from atom" "two fixes on one particle" \
     also "fix bad all fibrad 1 1 emissivity 1 surroundings 300 cp 1"
+for style in "body nparticle 2 6" "hybrid sphere ellipsoid" "hybrid sphere tri"; do
+    printf '%s\n' "include $LOAD" "atom_style $style" "region box block 0 9 0 9 0 9" "create_box 1 box" \
+        "fix rad all fibrad 1 1 emissivity 1 cp 1 sigma 1 surroundings 0" "run 0" >"$work/shape.lmp"
+    name=${style#hybrid sphere }
+    ! limited_mpi 2 "$LMP" -in "$work/shape.lmp" -log "$work/shape.log" -screen none >"$work/shape.err" 2>&1 &&
+        grep -q "must be spheres, and atom_style ${name%% *} has others" "$work/shape.log"
+    verdict "atom_style $style is refused" $?
+done
 fails "no equal-style variable" "a variable that is not there" floor "zmin temperature v_none emissivity 0.9"
 fails "has a temperature of its own, not v_hot" "a capacity beside a variable" floor "zmin temperature v_hot emissivity 0.9 capacity 3e5"
 fails "too long for wall zmin" "steps of heat too long for a wall" floor "zmin temperature 1000 emissivity 0.9 at 0 capacity 1e4" heat 1

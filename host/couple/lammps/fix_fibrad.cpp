@@ -331,6 +331,11 @@ FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what
 int FixFibrad::setmask() { return FixConst::POST_FORCE | FixConst::END_OF_STEP | FixConst::POST_RUN; }
 
 void FixFibrad::init() {
+    const char *shape = atom->body_flag        ? "body"
+                        : atom->ellipsoid_flag ? "ellipsoid"
+                        : atom->tri_flag       ? "tri"
+                                               : nullptr;
+    if (shape) stop(std::string("particles must be spheres, and atom_style ") + shape + " has others");
     if (!atom->radius) stop("particles need radii (atom_style sphere)");
     if (!atom->tag_enable) stop("atoms need ids");
     if (domain->dimension != 3) stop("the dimension must be 3");

@@ -129,7 +129,8 @@ void check_box(Driver *driver) {
     const char *units = driver->lmp->update->unit_style;
     if (!radiation_units(&driver->radiation, units))
         stop(WRONG_INPUT, std::string("units are si or cgs, not ") + units);
-    const int types = driver->lmp->atom->ntypes;
+    const LAMMPS_NS::Atom *atom = driver->lmp->atom;
+    const int types = atom->ntypes;
     expand(&driver->options.emissivity, types, "emissivities");
     expand(&driver->options.solid, types, "conductivities of the solid");
     expand(&driver->options.contact, types, "conductivities at contacts");
@@ -138,7 +139,12 @@ void check_box(Driver *driver) {
         check(driver, radiation_begin(&driver->radiation, MPI_COMM_WORLD, domain->periodicity));
     check(driver,
           radiation_place(&driver->radiation, domain->boxlo, domain->boxhi, domain->periodicity, domain->boundary));
-    if (driver->lmp->atom->radius_flag == 0 || driver->lmp->atom->rmass_flag == 0)
+    const std::string shape = atom->superquadric_flag != 0 ? "superquadric"
+                              : atom->ellipsoid_flag != 0  ? "ellipsoid"
+                              : atom->tri_flag != 0        ? "tri"
+                                                           : "";
+    if (!shape.empty()) stop(WRONG_INPUT, "particles must be spheres, and atom_style " + shape + " has others");
+    if (atom->radius_flag == 0 || atom->rmass_flag == 0)
         stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
 }
 
