@@ -408,7 +408,7 @@ void FixFibrad::list_output() {
     list += text(", [%d] gone", 9 + 2 * walls);
     if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * walls, 11 + 2 * walls);
     say(text("fix fibrad: f_%s", id) + list);
-    if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error", id));
+    if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error of the power", id));
 }
 
 void FixFibrad::post_run() {
