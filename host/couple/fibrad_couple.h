@@ -260,6 +260,8 @@ typedef struct fibrad_insitu_contacts {
     double scale;               /* of the radii of spots; 0: 1 */
     double gas;                 /* power/(L K), conductivity of the gas in narrow gaps; 0: none */
     double gas_least;           /* L, least gap that counts; 0: 1e-7 of the smaller radius */
+    const double *capacity;     /* energy/K, heat capacities [n] of the bed, above 0 to INFINITY; NULL: one part */
+    double seconds;             /* of the step of heat for which the powers are; unused without capacity */
 } fibrad_insitu_contacts;
 
 /* What all contacts conduct, the same on all ranks. Powers of particles and walls add up to 0, to rounding. */
@@ -268,16 +270,18 @@ typedef struct fibrad_insitu_conducted {
     double particles;                     /* net power */
     double wall[FIBRAD_WALLS_MAX];        /* net powers, [walls] */
     double conductance[FIBRAD_WALLS_MAX]; /* power/K, [walls], of all contacts of a wall */
+    double parts;                         /* number of parts of the step of heat */
 } fibrad_insitu_conducted;
 
 /* Net power that particles gain through contacts at their present positions and temperatures, beside radiation.
  * Contacts are found anew in each call. Particles beyond walls or openings have no contacts, and openings have none. A
  * wall conducts whatever its emissivity. Steps of time are explicit: for particles, and for walls that store heat, 2
  * times the conductance times the step must be less than the heat capacity. Otherwise differences of temperatures may
- * change their sign in a step.
+ * change their sign in a step. With `capacity` a step in which twice this ratio is above 1 has up to 100 equal parts.
+ * Contacts and temperatures of walls stay the same in all of them, and powers are means over the parts.
  *   Input    bed, state: the same particles in the same order. Emissivities must be valid.
  *   Output   power[n]: above 0 where heat is gained, the same bits for every number of ranks
- *            conductance[n]: power/K, of all contacts of a particle
+ *            conductance[n]: power/K, of all contacts of a particle, divided by the number of parts
  *            conducted: may be NULL
  *   Errors   _ARGUMENT: as for fibrad_insitu_rows and fibrad_insitu_powers; a conductivity is not above 0
  *            _STATE: there are no rows

@@ -630,7 +630,9 @@ for words in "solid 0" "solid -4" "solid type 4 0"; do
     fails "conductivity of the solid.* must be above 0" "$words" strict "no $words"
 done
 fails "must be above 0, not nan" "a conductivity that is no number" strict "no solid nan"
-fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e8"
+fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e10"
+run 2 parts frozen.lmp "${whole[@]}" heat 1 strict "no contacts 1e6" && grep -q "step 0: contacts conduct in [0-9]* parts" "$work/parts.log"
+verdict "contacts that conduct in parts of a step of heat" $?
 fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
 fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl temperature 1000 emissivity 0.9" strict "no contacts 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"

@@ -615,13 +615,14 @@ void FixFibrad::find_powers() {
     std::vector<double> power(member.size()), conductance(member.size()), capacity = values(cp);
     check_values(t);
     const Bed present = present_bed();
-    need_good(radiation_powers(&radiation, &present.bed, t.data(), number_of_rows(false), k.data(), power.data(),
-                               conductance.data()));
     capacity.resize(member.size(), HUGE_VAL);
     for (size_t m = 0; m < member.size(); m++)
         capacity[m] = atom->mask[member[m]] & groupbit ? capacity[m] * mass(member[m]) : HUGE_VAL;
-    need_good(radiation_stable(&radiation, &present.bed, t.data(), capacity.data(), conductance.data(),
-                               update->dt * heat_every, heat_every));
+    const double seconds = update->dt * heat_every;
+    need_good(radiation_powers(&radiation, &present.bed, t.data(), number_of_rows(false), k.data(), capacity.data(),
+                               seconds, power.data(), conductance.data()));
+    need_good(
+        radiation_stable(&radiation, &present.bed, t.data(), capacity.data(), conductance.data(), seconds, heat_every));
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
     for (size_t m = 0; m < member.size(); m++) q[member[m] * columns] = power[m];

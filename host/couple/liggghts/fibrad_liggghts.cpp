@@ -356,10 +356,10 @@ void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     if (!driver->radiates || number % driver->options.rows == 0)
         check(driver, radiation_rows(r, &bed, (uint64_t)number, false));
     share_temperatures(driver, false);
-    check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), driver->gain.data(),
-                                   driver->conductance.data()));
-    check(driver, radiation_stable(r, &bed, t, driver->heat_capacity.data(), driver->conductance.data(),
-                                   driver->lmp->update->dt * (double)every, every));
+    const double seconds = driver->lmp->update->dt * (double)every, *capacity = driver->heat_capacity.data();
+    check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), capacity, seconds,
+                                   driver->gain.data(), driver->conductance.data()));
+    check(driver, radiation_stable(r, &bed, t, capacity, driver->conductance.data(), seconds, every));
     double *source = driver->source->vector_atom, *power = driver->power->vector_atom;
     for (int i = 0; i < n; ++i) {
         const double gain = driver->gain[(size_t)i];
