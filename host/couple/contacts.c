@@ -141,28 +141,27 @@ static int add_parts(fibrad_insitu_build *b, const fibrad_insitu_contacts *conta
     sum->parts = parts;
     if (parts == 1) return FIBRAD_OK;
     fibrad_link *link = NULL;
-    fibrad_place *place = malloc((b->halo + 1) * sizeof *place);
-    double *t = malloc((all + 1) * sizeof *t);
-    int status = fibrad_agree(b->s->comm, place && t ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
-    for (size_t k = 0, used = 0; k < all && !status; ++k)
-        if (p[k].owner.rank != rank) place[used++] = p[k].owner;
-    if (!status) status = fibrad_link_to(&link, b->s->comm, b->own, place, b->halo);
+    int status = fibrad_block_fit(&b->s->sent, b->halo, sizeof(fibrad_place));
+    if (!status) status = fibrad_block_fit(&b->s->value, all, sizeof(double));
+    status = fibrad_agree(b->s->comm, status, NULL);
+    if (status) return status;
+    fibrad_place *place = b->s->sent.at;
+    double *t = b->s->value.at, *sums = (double *)sum;
+    for (uint32_t k = 0, used = 0; k < all; ++k)
+        if (p[k].owner.rank != rank) place[used] = p[k].owner, p[k].owner.index = (uint32_t)b->own + used++;
+    status = fibrad_link_to(&link, b->s->comm, b->own, place, b->halo);
     for (int part = 1; part < (int)parts && !status; ++part) {
-        for (size_t i = 0; i < b->own; ++i) {
-            const uint32_t at = order[i];
-            t[i] = state->temperature[at] + power[at] * contacts->seconds / (parts * contacts->capacity[at]);
-        }
+        for (size_t i = 0; i < b->own; ++i)
+            t[i] = state->temperature[order[i]] +
+                   power[order[i]] * contacts->seconds / (parts * contacts->capacity[order[i]]);
         fibrad_link_forward(link, t, 1);
-        for (size_t k = 0, used = b->own; k < all; ++k)
-            p[k].temperature = t[p[k].owner.rank == rank ? p[k].owner.index : used++];
+        for (size_t k = 0; k < all; ++k) p[k].temperature = t[p[k].owner.index];
         add_flows(b, state, conductor, count, power, conductance, sum);
     }
     for (size_t i = 0; i < n; ++i) power[i] /= parts, conductance[i] /= parts * parts;
-    sum->contacts /= parts, sum->particles /= parts;
-    for (uint32_t k = 0; k < b->bed->walls; ++k) sum->wall[k] /= parts, sum->conductance[k] /= parts;
+    for (size_t k = 0; k < sizeof *sum / sizeof *sums; ++k) sums[k] /= parts;
+    sum->parts = parts;
     fibrad_link_free(link);
-    free(place);
-    free(t);
     return status;
 }
 
