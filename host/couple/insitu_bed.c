@@ -1,6 +1,7 @@
 /* insitu_bed.c - checks and measures a bed, and gathers the particles of a scene. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "couple/insitu.h"
@@ -14,23 +15,40 @@
 #define PART_LEAST   1e-3 /* a particle whose radius would be reduced to less is left out */
 #define OUTSIDE_MOST 0.1  /* part of all particles that may be left out of the first rows */
 
-/* Says which walls do not bound a box or a cylinder. wall: 1 + index of the first one at fault; 0: it is an opening. */
-static int refuse_walls(const fibrad_insitu_bed *bed, uint32_t wall, char *message) {
+/* A wall, or behind all walls an opening. name[48]: what messages call it */
+static fibrad_wall wall_of(const fibrad_insitu_build *b, uint32_t k, char *name) {
+    const bool opens = k >= b->bed->walls;
+    const fibrad_wall wall =
+        opens ? (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = b->opening[k - b->bed->walls]} : b->bed->wall[k];
+    const int count = snprintf(name, 48, opens ? "the opening" : "wall %" PRIu32, k + 1);
+    if (wall.kind == FIBRAD_WALL_PLANE) snprintf(name + count, 48 - (size_t)count, " at %g", wall.plane.at);
+    return wall;
+}
+
+/* What contradicts in two walls. NULL: nothing */
+static const char *contradiction(const fibrad_wall *a, const fibrad_wall *b) {
+    const bool round = a->kind == FIBRAD_WALL_CYLINDER, same_kind = a->kind == b->kind;
+    if (round && same_kind) return "is a cylinder, as is";
+    if (round && b->kind == FIBRAD_WALL_PLANE && b->plane.axis != a->cylinder.along)
+        return "is a cylinder, and across it lies";
+    if (!same_kind || a->kind != FIBRAD_WALL_PLANE || a->plane.axis != b->plane.axis) return NULL;
+    if (a->plane.upper == b->plane.upper) return "is on the same side as";
+    return b->plane.upper && !(a->plane.at < b->plane.at) ? "does not lie below" : NULL;
+}
+
+/* Says what contradicts in the walls, of which no scene can be made. */
+static int refuse_walls(const fibrad_insitu_build *b) {
+    const uint32_t n = b->bed->walls + b->openings;
     const char *bound = "the walls do not bound a box or a cylinder";
-    for (uint32_t k = 0; k < bed->walls; ++k)
-        for (uint32_t c = 0; c < bed->walls; ++c) {
-            const fibrad_plane *low = &bed->wall[k].plane, *high = &bed->wall[c].plane;
-            const bool planes = bed->wall[k].kind == FIBRAD_WALL_PLANE && bed->wall[c].kind == FIBRAD_WALL_PLANE;
-            if (planes && low->axis == high->axis && !low->upper && high->upper && !(low->at < high->at))
-                return fibrad_refuse(message, FIBRAD_E_ARGUMENT,
-                                     "%s: wall %" PRIu32 " at %g does not lie below wall %" PRIu32 " at %g", bound,
-                                     k + 1, low->at, c + 1, high->at);
-        }
-    if (wall == 0)
-        return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: an opening contradicts the box or walls", bound);
-    for (uint32_t k = 0; k < wall; ++k) wall += bed->wall[k].kind == FIBRAD_WALL_MESH;
-    return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: wall %" PRIu32 " contradicts the box or the walls before it",
-                         bound, wall);
+    char *message = b->s->message, name[2][48];
+    for (uint32_t k = 0; k < n * n; ++k) {
+        const fibrad_wall first = wall_of(b, k / n, name[0]), second = wall_of(b, k % n, name[1]);
+        const char *why = k / n != k % n ? contradiction(&first, &second) : NULL;
+        if (why) return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: %s %s %s", bound, name[0], why, name[1]);
+        if (first.kind == FIBRAD_WALL_CYLINDER && !(first.cylinder.radius > 0))
+            return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: the radius of %s is not above 0", bound, name[0]);
+    }
+    return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "%s: one is not valid, or its axis is periodic", bound);
 }
 
 /* Checks the bed without its particles, which is the same on all ranks. */
@@ -65,10 +83,9 @@ static int check_bed(fibrad_insitu_build *b) {
                                         .walls = walls,
                                         .opening = b->opening,
                                         .openings = bed->openings};
-    fibrad_fault fault = {0};
-    const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, &fault);
+    const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
-    if (status) return refuse_walls(bed, fault.wall, message);
+    if (status) return refuse_walls(b);
     for (uint32_t k = 0; k < bed->walls; ++k)
         if (!(bed->wall_emissivity[k] >= 0 && bed->wall_emissivity[k] <= 1))
             return fibrad_refuse(message, FIBRAD_E_ARGUMENT, "wall %" PRIu32 ": its emissivity is not between 0 and 1",

@@ -591,6 +591,10 @@ fails "wall zlo: .1000. needs a word before it, as in .zlo temperature" "a wall 
 fails "wall zmin: it needs a temperature, or the word insulated" "a wall without a temperature" floor "zmin"
 fails "zmni. is no wall; did you mean zmin" "a wall that is not there" floor "zmni temperature 1000"
 fails "wall 1 at 9 does not lie below wall 2 at 3" "walls that cross" floor "zmin temperature 1000 emissivity 0.9 at 9 wall zmax temperature 1000 emissivity 0.9 at 3"
+fails "wall 2 is a cylinder, as is wall 3" "two cylinders" \
+    floor "zmin temperature 1000 at 0 wall zcylinder 0 0 9 temperature 300 wall xcylinder 0 0 9 temperature 300"
+fails ".contacts. is given twice" "a keyword twice" strict "no contacts 5 contacts 6"
+fails "sigma must be above 0, not 0" "a sigma of 0" strict "no sigma 0"
 fails "capacity: 0 is not within 1e-300" "a capacity of 0" floor "zmin temperature 1000 emissivity 0.9 capacity 0"
 fails "one of low, normal and high, not .fine" "an accuracy that is not there" strict "no accuracy fine"
 fails ".seed. is a whole number, not .-3" "a seed below 0" strict "no seed -3"

@@ -1192,7 +1192,7 @@ static void cylinders_are_refused(fibrad_insitu *s) {
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.wall = floor;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT,
-                      "do not bound a box or a cylinder: wall 2 contradicts");
+                      "do not bound a box or a cylinder: wall 1 is a cylinder, and across it lies wall 2 at");
         bed.walls = 1, bed.opening = across, bed.openings = 2;
         check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "do not bound a box or a cylinder");
         bed.openings = 0, bed.periodic[axis] = 0;
@@ -1211,7 +1211,8 @@ static void walls_that_cross_are_refused(fibrad_insitu *s) {
     check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "wall 3 at 5 does not lie below wall 2 at 3");
     const fibrad_wall twice[] = {wall[0], wall[1], wall[1]};
     bed.wall = twice;
-    check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT, "wall 3 contradicts the box or the walls");
+    check_refused(s, fibrad_insitu_rows(s, &bed, 0), FIBRAD_E_ARGUMENT,
+                  "wall 2 at 3 is on the same side as wall 3 at 3");
 }
 
 /* If one rank cannot write its file, no file is left. */

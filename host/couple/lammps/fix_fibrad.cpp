@@ -22,6 +22,7 @@ extern "C" {
 #include <cmath>
 #include <cstdarg>
 #include <cstring>
+#include <set>
 
 using namespace LAMMPS_NS;
 
@@ -107,8 +108,10 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     radiation.heats = heat_every > 0;
     if (heat_every && rows_every % heat_every) stop("NROWS must be a multiple of NEVERY");
 
+    std::set<std::string> known;
     while (at < word.size()) {
         const std::string key = next();
+        if (key != "wall" && !known.insert(key).second) stop("`" + key + "` is given twice");
         if (key == "emissivity")
             emissivity = read_property("the emissivity", 0, 1);
         else if (key == "cp")
@@ -128,7 +131,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
         else if (key == "initial")
             initial = number("the initial temperature", 0, huge);
         else if (key == "sigma")
-            radiation.sigma = number("sigma", 0, huge);
+            radiation.sigma = number("sigma", 1e-300, huge);
         else if (key == "rows")
             rows_file = next();
         else if (key == "errors")

@@ -53,6 +53,7 @@ struct Driver {
     std::vector<script_mesh> mesh;
     Fix *temperature, *source, *power, *known, *capacity;        /* properties of particles, and of types */
     double came, gone;                                           /* heat of particles that have come or gone, here */
+    double seen;                                                 /* number of particles that came to be known here */
     std::vector<uint64_t> id;                                    /* [own] */
     std::vector<double> emissivity, gain, heat_capacity;         /* [own] */
     std::vector<double> conductivity;                            /* [own], k*; empty: infinite */
@@ -139,6 +140,9 @@ void check_box(Driver *driver) {
         check(driver, radiation_begin(&driver->radiation, MPI_COMM_WORLD, domain->periodicity));
     check(driver,
           radiation_place(&driver->radiation, domain->boxlo, domain->boxhi, domain->periodicity, domain->boundary));
+    const fibrad_insitu_bed empty =
+        radiation_bed(&driver->radiation, domain->boxlo, domain->boxhi, domain->periodicity);
+    check(driver, radiation_check(&driver->radiation, &empty));
     const std::string shape = atom->superquadric_flag != 0 ? "superquadric"
                               : atom->ellipsoid_flag != 0  ? "ellipsoid"
                               : atom->tri_flag != 0        ? "tri"
@@ -336,8 +340,8 @@ void count_particles(Driver *driver) {
         const double heat = heat_capacity(driver, i) * driver->temperature->vector_atom[i];
         if (known[i] >= 0)
             left -= known[i];
-        else if (driver->counts)
-            driver->came += heat;
+        else
+            driver->seen += 1, driver->came += driver->counts ? heat : 0;
         known[i] = heat, all += heat;
     }
     driver->gone = left + all, driver->counts = true;
@@ -395,7 +399,8 @@ double stored_heat(const Driver *driver) {
 }
 
 void print_summary(const Driver *driver, double before, double after, double seconds) {
-    const double came = sum_of_ranks(driver->came), gone = sum_of_ranks(driver->gone);
+    const bool left = sum_of_ranks(driver->seen - driver->lmp->atom->nlocal) > 0; /* else rounding alone is gone */
+    const double came = sum_of_ranks(driver->came), gone = left ? sum_of_ranks(driver->gone) : 0;
     fibrad_insitu_facts facts;
     fibrad_insitu_facts_get(driver->radiation.insitu, &facts);
     const uint32_t walls = driver->radiation.walls;

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 #include <sstream>
 
 namespace {
@@ -90,6 +91,7 @@ std::string check(const liggghts_options *options, const radiation *r) {
 int liggghts_options_parse(int argc, char **argv, liggghts_options *options, radiation *radiation, int *rest,
                            std::string *wrong) {
     int k = 1;
+    std::set<std::string> known;
     for (; k < argc && std::strcmp(argv[k], "--") != 0; ++k) {
         std::string name = argv[k];
         if (name[0] != '-') return *wrong = "unknown argument: " + name, OPTIONS_WRONG;
@@ -98,6 +100,8 @@ int liggghts_options_parse(int argc, char **argv, liggghts_options *options, rad
         static char yes[] = "yes";
         char *equals = std::strchr(argv[k], '=');
         if (equals != nullptr) name.resize(name.find('='));
+        if (name != "wall" && !known.insert(name).second)
+            return *wrong = "--" + name + " is given twice", OPTIONS_WRONG;
         char *text = name == "strict" ? yes : equals != nullptr ? equals + 1 : k + 1 < argc ? argv[++k] : nullptr;
         if (text == nullptr) return *wrong = "an argument is missing: --" + name, OPTIONS_WRONG;
         const std::string given = text;

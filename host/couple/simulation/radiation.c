@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "simple/cylinder.h"
-#include "couple/ranks/collective.h"
+#include "couple/insitu.h"
 #include "text/read_number.h"
 
 /* Keeps a sentence. Returns false. */
@@ -240,6 +240,11 @@ static bool take(struct radiation *r, int status, uint64_t step) {
     return true;
 }
 
+bool radiation_check(struct radiation *r, const fibrad_insitu_bed *bed) {
+    fibrad_insitu_build b = {.s = r->insitu, .to = &r->insitu->next, .bed = bed};
+    return take(r, fibrad_insitu_check(&b), 0);
+}
+
 bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t step, bool follow) {
     r->place_meshes(r->simulation);
     if (mesh_walls_face(&r->meshes, r->comm, bed)) return refuse(r, "out of memory");
@@ -270,10 +275,8 @@ bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const d
     for (size_t i = 0; i < bed->n && !status; ++i) power[i] += through[i];
     free(through);
     if (!status && r->conducted.parts > 1 && !r->told_parts) {
-        char sentence[WALL_FAULT];
-        snprintf(sentence, sizeof sentence, "step %" PRIu64 ": contacts conduct in %g parts of a step of heat", step,
-                 r->conducted.parts);
-        r->say(r->simulation, sentence, false);
+        refuse(r, "step %" PRIu64 ": contacts conduct in %g parts of a step of heat", step, r->conducted.parts);
+        r->say(r->simulation, r->fault, false);
         r->told_parts = true;
     }
     return take(r, status, step);

@@ -91,6 +91,9 @@ bool radiation_place(struct radiation *r, const double low[3], const double high
 fibrad_insitu_bed radiation_bed(const struct radiation *r, const double low[3], const double high[3],
                                 const int periodic[3]);
 
+/* Checks the walls of a bed without particles. */
+bool radiation_check(struct radiation *r, const fibrad_insitu_bed *bed);
+
 /* Makes all rows. follow: only those of particles that have come. */
 bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t step, bool follow);
 
