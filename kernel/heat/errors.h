@@ -8,6 +8,10 @@
 #define FIBRAD_HEAT_BEAM_ERROR .7
 #define FIBRAD_HEAT_RAY_ERROR  1.75
 
+/* Differences of the rays of fine patches and of meshes are added to those of beams of spheres, whose error is a
+ * smaller part of the difference. So they are enlarged by this factor. */
+#define FIBRAD_HEAT_RAYS_WEIGHT (FIBRAD_HEAT_RAY_ERROR / FIBRAD_HEAT_BEAM_ERROR)
+
 /* The area of patches, and mean and variance of their radiosities. */
 typedef struct fibrad_heat_spread {
     double area, mean, variance;

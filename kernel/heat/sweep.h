@@ -7,6 +7,13 @@
 /* Chooses the sequence of spheres in sweeps, and the part of each row. */
 void fibrad_heat_divide(fibrad_heat *heat);
 
+/* Lists rays of meshes that meet spheres by the part of the sphere, and closes the rows of these spheres. All beams and
+ * rays are followed. */
+void fibrad_heat_link_rays(fibrad_heat *heat);
+
+/* The sphere of a patch. */
+uint32_t fibrad_heat_sphere_of(const fibrad_heat *heat, uint32_t patch);
+
 /* Sets, and returns, what patch a sends in the next sweep. */
 static inline void fibrad_heat_send(fibrad_heat *heat, uint32_t a, double value) { heat->solution.source[a] = value; }
 static inline double fibrad_heat_sent(const fibrad_heat *heat, uint32_t a) { return heat->solution.source[a]; }
