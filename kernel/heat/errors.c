@@ -43,7 +43,7 @@
 #define BETWEEN_BEAMS_ERROR .25                    /* D: what one direction brings, in the share of open beams */
 #define FLOAT_ERROR         0x1p-25                /* what a surface exchanges: factors of pencils are floats */
 #define RAY_ERROR           FIBRAD_HEAT_RAY_ERROR  /* F: even minus odd rays of a wall, two independent sequences */
-#define CHANCE_ERROR        .2                    /* G: of a mesh that meets spheres: the error of rays by chance */
+#define CHANCE_ERROR        .2                     /* G: of a mesh that meets spheres: the error of rays by chance */
 #define RAY_SAMPLES         16                     /* F: most samples of a mesh, whose rays are in so many ranges */
 
 /* 2. patches */
@@ -241,7 +241,8 @@ static few_links few_of_wall(const fibrad_heat *heat, const fibrad_heat_errors *
     for (uint32_t r = sent->first; r < sent->first + sent->count; r++)
         rays += (heat->ray[r].to < fibrad_heat_others(heat) ? 1 : 2) * heat->ray[r].area;
     const double share = area > 0 ? fibrad_min(1, rays / area) : 0;
-    return (few_links){share > 0 ? FEW_ON_WALLS * share * errors->dim[1] / (2 * sent->density * heat->patch_area) : 0,
+    const double patch = fibrad_min(heat->patch_area, area);
+    return (few_links){share > 0 ? FEW_ON_WALLS * share * errors->dim[1] / (2 * sent->density * patch) : 0,
                        FEW_ON_WALLS * (1 - share) * errors->dim[0] * heat->config.patches / heat->beams};
 }
 

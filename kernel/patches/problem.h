@@ -386,10 +386,11 @@ static inline uint32_t fibrad_heat_body_of_row(const fibrad_heat *heat, uint32_t
     return row < heat->spheres ? row : heat->division.fine[row - heat->spheres].body;
 }
 
-/* Few beams of a large sphere meet a small mesh, and these few come in bundles. So the rays of the mesh that meet the
- * sphere count as well, if the mesh has many more per area than the sphere has beams. One beam among many, which are
- * spread more evenly, is worth this many rays. */
+/* Few beams of a large sphere meet a small mesh. So the rays of the mesh that meet the sphere count as well, if there
+ * are enough of them per area. Near a mesh, beams are spread more evenly than rays, so that one is worth EVEN rays.
+ * Beams to a mesh farther than this many radii come in bundles of a few directions. */
 #define FIBRAD_HEAT_EVEN 16.0
+#define FIBRAD_HEAT_FAR  4.0
 
 /* Parts of a sphere behind a mesh exchange with the side of the mesh before them. There rays do not tell what beams
  * do. So rays do not count if the mesh comes this near to the centre, in radii. */
@@ -399,8 +400,9 @@ static inline uint32_t fibrad_heat_body_of_row(const fibrad_heat *heat, uint32_t
 static inline double fibrad_heat_sees(const fibrad_heat *heat, uint32_t m, uint32_t row) {
     const uint32_t owner = fibrad_heat_body_of_row(heat, row);
     const double density = heat->sent[FIBRAD_MESHES + m].density;
-    if (owner < heat->spheres && heat->scene->clear[owner] < FIBRAD_HEAT_PIERCED) return 0;
-    return density > FIBRAD_HEAT_EVEN * heat->density[row] ? density : 0;
+    const double clear = owner < heat->spheres ? heat->scene->clear[owner] : 1;
+    const double least = clear > FIBRAD_HEAT_FAR ? heat->density[row] : FIBRAD_HEAT_EVEN * heat->density[row];
+    return density > least && clear >= FIBRAD_HEAT_PIERCED ? density : 0;
 }
 
 /* The same for what the pencils of the row name `other`, which is no row. */
@@ -415,6 +417,11 @@ static inline double fibrad_heat_beams_of(const fibrad_heat_pencil *pencil) {
     uint32_t beams = 0;
     for (uint32_t k = 0; k < pencil->bundles; k++) beams += bundle[k].count;
     return (double)pencil->weight * beams;
+}
+
+/* The row of a fine patch by its number among all fine patches. */
+static inline uint32_t fibrad_heat_row_of_fine(const fibrad_heat *heat, uint32_t fine) {
+    return heat->division.four[fine / FIBRAD_HEAT_FOUR].row;
 }
 
 /* The patch of a body at u, v, 0 to 1, of one of its own fours, fine or not. patch: the own patch there. */

@@ -17,7 +17,7 @@
 #define OUTSIDE        4.0  /* patches of meshes, also outside the walls, may be this many times the limit */
 #define RAYS_PER_PATCH 8.0
 #define RAYS_PER_BEAM  6.0
-#define SHARE_OF_MESH  16.0 /* a mesh sends at least one ray of so many, if there are not more meshes */
+#define SHARE_OF_MESH  4.0 /* a mesh sends at least one ray of so many, if there are not more meshes */
 
 /* The longest finite edge of the container; 1 if there is none. */
 static double container_size(const fibrad_scene *scene) {
