@@ -43,8 +43,9 @@
 #define BETWEEN_BEAMS_ERROR .25                    /* D: what one direction brings, in the share of open beams */
 #define FLOAT_ERROR         0x1p-25                /* what a surface exchanges: factors of pencils are floats */
 #define RAY_ERROR           FIBRAD_HEAT_RAY_ERROR  /* F: even minus odd rays of a wall, two independent sequences */
-#define CHANCE_ERROR        .2                     /* G: of a mesh that meets spheres: the error of rays by chance */
-#define RAY_SAMPLES         16                     /* F: most samples of a mesh, whose rays are in so many ranges */
+#define CHANCE_ERROR        .4  /* G: of a mesh that meets spheres: the error of its rays if chance sends them */
+#define BUNDLE_ERROR        2.0 /* G: the same of beams that meet it, which come in bundles */
+#define RAY_SAMPLES         16  /* F: most samples of a mesh, whose rays are in so many ranges */
 
 /* 2. patches */
 #define EXTRAPOLATION_ERROR .2   /* S: change by extrapolation, with PATCHES; as the root of the edge of a patch */
@@ -137,17 +138,23 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, f
     errors->outside += squared(outside);
 }
 
-/* The variance of what the rays of a mesh bring if they go by chance. 0: none meets a sphere. */
-static double variance_of_rays(const fibrad_heat *heat, const fibrad_heat_rays *sent) {
-    double sum = 0, squares = 0;
+/* The square of the error of what rays of a mesh bring, and of the beams of spheres that meet it. Few of either hit, so
+ * where is chance, more or less. A ray that meets a sphere tells how many beams of the sphere should meet the mesh. 0:
+ * no ray meets a sphere. */
+static double chance_of_rays(const fibrad_heat *heat, const fibrad_heat_rays *sent) {
+    double sum = 0, squares = 0, beams = 0;
     bool met = false;
     for (uint32_t k = sent->first; k < sent->first + sent->count; k++) {
         const fibrad_heat_ray *ray = &heat->ray[k];
         if (ray->area == 0) continue;
         const double flow = ray->area * (heat->solution.source[ray->to] - heat->solution.source[ray->from]);
-        sum += flow, squares += squared(flow), met = met || ray->to < fibrad_heat_others(heat);
+        sum += flow, squares += squared(flow);
+        if (ray->to >= fibrad_heat_others(heat)) continue;
+        beams += squared(flow) * (1 / (ray->area * sent->density) - 1);
+        met = true;
     }
-    return met ? fibrad_max(0, squares - squared(sum) / sent->count) : 0;
+    const double rays = fibrad_max(0, squares - squared(sum) / sent->count);
+    return met ? squared(CHANCE_ERROR) * rays + squared(BUNDLE_ERROR) * beams : 0;
 }
 
 /* Samples the rays of all walls. Those of a mesh are divided into ranges, which have sequences of their own. Returns
@@ -159,12 +166,15 @@ static double sample_all_rays(const fibrad_heat *heat, fibrad_heat_errors *error
         const uint32_t *first = heat->scene->mesh.first, mesh = slot - FIBRAD_MESHES;
         const bool many = slot >= FIBRAD_MESHES && first[mesh + 1] - first[mesh] >= RAY_SAMPLES;
         const uint32_t ranges = many ? RAY_SAMPLES : 1;
-        const double chance = slot >= FIBRAD_MESHES ? variance_of_rays(heat, sent) : 0;
+        const double chance = slot >= FIBRAD_MESHES ? chance_of_rays(heat, sent) : 0;
+        const double before = chance > 0 ? errors->rays[FIBRAD_WALLS + mesh] : 0;
         for (uint32_t k = 0; k < ranges; k++)
             sample_rays(heat, sent->first + (uint32_t)((uint64_t)sent->count * k / ranges),
                         sent->first + (uint32_t)((uint64_t)sent->count * (k + 1) / ranges), errors);
-        if (chance > 0) errors->rays[FIBRAD_WALLS + mesh] += squared(CHANCE_ERROR / RAY_ERROR) * chance;
         more += chance > 0 ? RAY_SAMPLES - 1 : ranges - 1;
+        if (!(chance > 0)) continue;
+        errors->rays[FIBRAD_WALLS + mesh] = before + chance / squared(RAY_ERROR);
+        errors->meets[FIBRAD_WALLS + mesh] = true;
     }
     return more;
 }
@@ -425,11 +435,12 @@ typedef struct absorbed_error {
 static absorbed_error absorbed_of(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b,
                                   const fibrad_heat_spread *own) {
     const double emission = fibrad_heat_is_insulated(heat, b) ? own->mean : heat->sources.emission[b];
+    const bool meets = b >= heat->spheres && errors->meets[b - heat->spheres];
+    const double few = meets ? few_error(heat, errors, b) : fibrad_heat_sent_back(heat, b) * squared(errors->few);
     return (absorbed_error){(sampled_emission(heat, errors, b, own->area) +
                              errors->sampled[b >= heat->spheres] * distance_of(errors, own)) /
                                 2,
-                            (squared(errors->common) + fibrad_heat_sent_back(heat, b) * squared(errors->few)) *
-                                squared(emission - errors->given),
+                            (squared(errors->common) + few) * squared(emission - errors->given),
                             squared(errors->walls / errors->all.area)};
 }
 

@@ -28,7 +28,8 @@ typedef struct fibrad_heat_errors {
     /* squares of the differences between even and odd rays, summed over all walls that send rays: of the power of each
      * body that is not a sphere, and of that of the surroundings */
     double rays[FIBRAD_HEAT_OTHERS], outside;
-    double outside_area; /* L^2, for which the rays between walls and surroundings stand */
+    bool meets[FIBRAD_HEAT_OTHERS]; /* of these bodies, whether own rays that meet spheres count */
+    double outside_area;            /* L^2, for which the rays between walls and surroundings stand */
     fibrad_heat_spread all;
     double few;    /* error over power of a sphere among spheres that reflect all, from few beams per patch */
     double dim[2]; /* mean reflectivity by area */
