@@ -35,6 +35,7 @@
  *   R  cubes, cups and mono2000 with insulated walls, docs/accuracy.md
  *   M  small spheres beside triangles against the same beside planes, which are divided
  *   L  dim walls beside few spheres, tests/test_heat_walls.c residuals_are_estimated
+ *   G  150 small plates before a sphere, tests/test_heat_mesh.c
  *   H  240 pairs of spheres and 400 spheres of poly2000, docs/accuracy.md */
 
 /* 1. beams and rays */
@@ -138,9 +139,9 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, f
     errors->outside += squared(outside);
 }
 
-/* The square of the error of what rays of a mesh bring, and of the beams of spheres that meet it. Few of either hit, so
- * where is chance, more or less. A ray that meets a sphere tells how many beams of the sphere should meet the mesh. 0:
- * no ray meets a sphere. */
+/* The square of the error of what rays of a mesh and beams of spheres bring each other. So few of them hit that it is
+ * chance, more or less, how many do. A ray that meets a sphere tells how many beams of the sphere should meet the mesh.
+ * The mesh may also lack one ray, or have one too many. 0: no ray meets a sphere. */
 static double chance_of_rays(const fibrad_heat *heat, const fibrad_heat_rays *sent) {
     double sum = 0, squares = 0, beams = 0;
     bool met = false;
@@ -153,8 +154,8 @@ static double chance_of_rays(const fibrad_heat *heat, const fibrad_heat_rays *se
         beams += squared(flow) * (1 / (ray->area * sent->density) - 1);
         met = true;
     }
-    const double rays = fibrad_max(0, squares - squared(sum) / sent->count);
-    return met ? squared(CHANCE_ERROR) * rays + squared(BUNDLE_ERROR) * beams : 0;
+    const double one = sum / sent->count, rays = fibrad_max(0, squares - sum * one);
+    return met ? squared(CHANCE_ERROR) * rays + squared(BUNDLE_ERROR) * beams + squared(one) : 0;
 }
 
 /* Samples the rays of all walls. Those of a mesh are divided into ranges, which have sequences of their own. Returns
