@@ -14,10 +14,6 @@ void fibrad_heat_link_rays(fibrad_heat *heat);
 /* The sphere of a patch. */
 uint32_t fibrad_heat_sphere_of(const fibrad_heat *heat, uint32_t patch);
 
-/* Sets, and returns, what patch a sends in the next sweep. */
-static inline void fibrad_heat_send(fibrad_heat *heat, uint32_t a, double value) { heat->solution.source[a] = value; }
-static inline double fibrad_heat_sent(const fibrad_heat *heat, uint32_t a) { return heat->solution.source[a]; }
-
 /* The net flow to each patch after all parts are swept: [patches]. After the sweep FIBRAD_HEAT_AREA: areas. */
 const double *fibrad_heat_gathered(fibrad_heat *heat);
 
