@@ -154,6 +154,20 @@ TEST(exact_pairs_have_the_same_bits) {
     check_closed(first);
 }
 
+/* Small spheres in a thin layer about a large one have many near ones. A row tries no more of them than it has windows.
+ */
+TEST(few_pairs_are_tried_in_a_thin_layer) {
+    enum { N = 20000 };
+    OWNED_BED bed = BED({0, 0, 0, 1});
+    for (uint64_t i = 0; i < N; i++) {
+        const double z = 1 - (2 * (double)i + 1) / N, angle = 2.399963229728653 * (double)i, ring = sqrt(1 - z * z);
+        const double out = 1.0006 + .02 * bed_make_random(3, i);
+        add_sphere(&bed, out * ring * cos(angle), out * ring * sin(angle), out * z, 5e-4);
+    }
+    OWNED_FACTORS *factors = factors_of(&bed, NULL, &(fibrad_beam_rule){.directions = 55});
+    ck_assert_uint_le(factors->matrix.start[N + 1], 2 * 55 * (uint64_t)N);
+}
+
 /* ---- exchange and heat ------------------------------------------------------------------------------------------ */
 
 /* The exchange factor of two far spheres of emissivity e, whose reflected light hardly meets the other again. */

@@ -10,6 +10,11 @@
 #define FEW_SPHERES 256u
 /* Otherwise a row tries the spheres within this distance, in cube roots of the volume per sphere: about 50. */
 #define NEAR_SPACINGS 2.3
+/* Spheres may lie closer than the volume tells, as in a thin layer. If so many are near for each window of the row, the
+ * tries would cost more than the windows. Then the distance becomes less, by a ratio, until few are near. */
+#define MANY_NEAR 1.5
+#define FEW_NEAR  0.2
+#define CLOSER    0.7
 /* A pair is not tried if so many other spheres are expected to reach into its hull. Let r be the radius of equal
  * spheres in random places, and d the distance of the centres. The number is 4 pi r^2 (d + 8 r/3) over the volume per
  * sphere. */
@@ -24,8 +29,12 @@
  * In others it costs more time than it gains. */
 #define LEAST_OPEN  1e-9
 #define WORTH_WHILE 0.05
-/* The triangles near a hull are asked for at most so many times. */
-#define HULL_STEPS 64
+/* The triangles near a hull are asked for at most so many times. In the cells about a hull at most so many spheres are
+ * compared with it. A pair that asks for more is not taken as free. */
+#define HULL_STEPS   64
+#define HULL_SPHERES 256u
+/* A row asks about so many spheres which of them no window has met. Each of them stands for equally many. */
+#define UNSEEN_ASKED 512u
 
 /* The square of the error of a sphere that hardly any window should meet, over that of one that many meet, both over
  * the squared difference of halves, minus 1. Measured: docs/accuracy.md. */
@@ -68,17 +77,22 @@ static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
     return distance < r * (1 - TOUCH);
 }
 
-/* Whether a sphere other than the two at `place` and `other` reaches into their hull. */
+/* Whether a sphere other than the two at `place` and `other` reaches into their hull. True, too, if it takes long to
+ * find out, as beside a large sphere among many small ones. */
 static bool spheres_between(const fibrad_scene *scene, const pair_hull *hull, uint32_t place, uint32_t other) {
+    uint32_t compared = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
         const double wide = hull->most + scene->level[l].radius_max;
         fibrad_walk walk;
         fibrad_walk_about(&walk, scene, &scene->level[l], hull->from, hull->to, wide);
-        while (fibrad_walk_next(&walk))
+        while (fibrad_walk_next(&walk)) {
+            compared += walk.end - walk.begin;
+            if (compared > HULL_SPHERES) return true;
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 const double at[3] = {scene->x[j], scene->y[j], scene->z[j]};
                 if (j != place && j != other && hull_meets(hull, at, scene->r[j])) return true;
             }
+        }
     }
     return false;
 }
@@ -182,18 +196,36 @@ static void try_sphere(pair_search *search, uint32_t other, bool many) {
     search->unseen += (uint64_t)(missed * missed / SQUARE_UNIT);
 }
 
-/* Tries the spheres within a distance [L] of the centre that hardly any window should meet. */
-static void try_near(pair_search *search, double distance) {
+/* Tries the spheres within a distance [L] of the centre that hardly any window should meet, or counts them. */
+static uint32_t try_near(pair_search *search, double distance, bool count) {
     const fibrad_workspace *work = search->work;
     const fibrad_scene *scene = work->scene;
     const double least = work->unit + scene->facts.radius_min;
-    if (work->windows * (least * least) > SOME_WINDOWS * 4 * distance * distance) return;
+    uint32_t near = 0;
+    if (work->windows * (least * least) > SOME_WINDOWS * 4 * distance * distance) return 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
         fibrad_walk walk;
         fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, work->centre, distance);
         while (fibrad_walk_next(&walk))
-            for (uint32_t j = walk.begin; j < walk.end; j++) try_sphere(search, j, false);
+            for (uint32_t j = walk.begin; j < walk.end; j++) {
+                if (count)
+                    near += square_between(work, j) * (work->unit * work->unit) <= distance * distance;
+                else
+                    try_sphere(search, j, false);
+            }
     }
+    return near;
+}
+
+/* Tries near spheres. */
+static void try_nearest(pair_search *search) {
+    const fibrad_workspace *work = search->work;
+    double distance = fibrad_min(NEAR_SPACINGS * work->scene->spacing, search->far * work->unit);
+    const double windows = work->windows;
+    uint32_t near = try_near(search, distance, true);
+    for (const bool many = near > MANY_NEAR * windows; many && near > FEW_NEAR * windows;)
+        near = try_near(search, distance *= CLOSER, true);
+    try_near(search, distance, false);
 }
 
 /* What the windows have seen besides spheres. */
@@ -220,10 +252,11 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = !scene->cut[work->place];
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
-    if (!search.all) try_near(&search, fibrad_min(NEAR_SPACINGS * scene->spacing, search.far * work->unit));
+    if (!search.all) try_nearest(&search);
     search.pairs = search.pairs && search.all;
-    for (uint32_t j = 0; j < n && search.sparse; j++) try_sphere(&search, j, false);
-    pairs.unseen = fibrad_sqrt((double)search.unseen * SQUARE_UNIT);
+    const uint32_t step = search.all ? 1 : 1 + n / UNSEEN_ASKED;
+    for (uint32_t j = 0; j < n && search.sparse; j += step) try_sphere(&search, j, false);
+    pairs.unseen = fibrad_sqrt((double)search.unseen * step * SQUARE_UNIT);
     pairs.moved = (double)search.moved * UNIT;
     pairs.told = search.all && !search.untold;
     if (pairs.open + pairs.moved > 0) return pairs;
