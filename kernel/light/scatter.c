@@ -113,7 +113,7 @@ static int follow_light(const fibrad_heat *heat, const fibrad_footprint *f, uint
     return ray->second != FIBRAD_NONE ? FIBRAD_OK : FIBRAD_E_BACK;
 }
 
-uint32_t fibrad_heat_scatter_tasks(uint32_t rays) { return rays / SCATTER_TASK; }
+uint32_t fibrad_heat_scatter_tasks(uint32_t rays) { return rays / SCATTER_TASK + (rays % SCATTER_TASK > 0); }
 
 int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t rays,
                         uint32_t task, fibrad_light_ray *ray) {
@@ -126,12 +126,23 @@ int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad
     if (status != FIBRAD_OK) return status;
     fibrad_footprint *f = fibrad_light_footprint(space);
     const uint32_t begin = task * SCATTER_TASK, count = fibrad_light_count(light);
-    for (uint32_t n = begin, made = FIBRAD_NONE; n < begin + SCATTER_TASK && status == FIBRAD_OK; n++) {
+    const uint32_t end = rays - begin < SCATTER_TASK ? rays : begin + SCATTER_TASK;
+    for (uint32_t n = begin, made = FIBRAD_NONE; n < end && status == FIBRAD_OK; n++) {
         const uint32_t k = (uint32_t)((uint64_t)n * count / rays);
         if (k != made) fibrad_footprint_make(f, heat->scene, light, made = k);
         status = follow_light(heat, f, n, &ray[n], &work->triangle);
     }
     return status;
+}
+
+/* Whether rays name patches and slots that there are, or bring no light. */
+static bool are_rays(const fibrad_heat *heat, const fibrad_light_ray *ray, uint32_t rays) {
+    for (uint32_t n = 0; n < rays; n++)
+        if (ray == NULL ||
+            (ray[n].first != FIBRAD_NONE &&
+             (ray[n].first >= heat->patches || ray[n].second >= heat->patches || ray[n].slot > FIBRAD_ESCAPED)))
+            return false;
+    return true;
 }
 
 /* Counts of rays that meet no sphere. Rays that end on triangles are counted by the slot at which they would end
@@ -207,9 +218,9 @@ static double spread_on_walls(const fibrad_heat *heat, const ray_counts *counts,
 int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light_ray *ray, uint32_t rays,
                             fibrad_light_ends *ends, double *hits) {
     fibrad_workspace *space;
-    if (heat == NULL || work == NULL || (rays > 0 && ray == NULL) || ends == NULL || hits == NULL)
-        return FIBRAD_E_ARGUMENT;
+    if (heat == NULL || work == NULL || ends == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    if (!are_rays(heat, ray, rays)) return FIBRAD_E_ARGUMENT;
     const size_t room = size_of_counts(heat);
     const int status = fibrad_light_open(heat->scene, work, room, &space);
     if (status != FIBRAD_OK) return status;
@@ -277,16 +288,29 @@ static bool is_lit_wholly(const reflection *r, uint32_t body, uint32_t begin, ui
     return whole;
 }
 
+static double beams_of_patch(const fibrad_heat *heat) {
+    return 2.0 * heat->beams / (heat->config.patches * heat->thin);
+}
+
+/* Whether as many rays meet a body as beams would leave its patches there. Rays are then the better ones. */
+static bool has_dense_rays(const reflection *r, uint32_t begin, uint32_t end) {
+    double rays = 0, power = 0, squares = 0;
+    for (uint32_t a = begin; a < end; a++)
+        rays += r->count[a], power += r->first[a], squares += r->first[a] * r->first[a];
+    return rays * squares >= beams_of_patch(r->heat) * power * power;
+}
+
 /* Divides the light on a body into that on patches which are lit wholly, and the rest, which rays reflect. Sets what
  * each ray carries on; the count of patches without rays is set below 1. If a body has no rays, its patches reflect
  * all.
  */
 static void divide_light(const reflection *r, uint32_t body, double absorptivity, const fibrad_light_hits *hits) {
     const uint32_t begin = r->heat->first[body], end = r->heat->first[body + 1];
+    const bool dense = has_dense_rays(r, begin, end);
     double rays = 0, power = 0;
     for (uint32_t a = begin, next; a < end; a = next) {
         next = end - a > FIBRAD_HEAT_FOUR ? a + FIBRAD_HEAT_FOUR : end;
-        const bool whole = is_lit_wholly(r, body, a, next);
+        const bool whole = !dense && is_lit_wholly(r, body, a, next);
         for (uint32_t k = a; k < next && whole; k++) r->count[k] = -1;
         for (uint32_t k = a; k < next && !whole; k++) rays += r->count[k], power += r->first[k];
     }
@@ -307,7 +331,7 @@ static void divide_light_of_wall(const reflection *r, uint32_t slot, double abso
 
 /* Adds the squares of a body. What its patches reflect leaves each patch by a few beams. */
 static void add_squares_of(const reflection *r, uint32_t body, double absorptivity, double *squares, double *beams) {
-    const double few = 2.0 * r->heat->beams / (r->heat->config.patches * r->heat->thin);
+    const double few = beams_of_patch(r->heat);
     for (uint32_t a = r->heat->first[body]; a < r->heat->first[body + 1]; a++) {
         const double reflected = (1 - absorptivity) * r->came[a];
         *squares += r->squares[a], *beams += reflected * reflected / few;
@@ -335,10 +359,11 @@ int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad
                         const fibrad_light_ray *ray, uint32_t rays, const double *absorptivity,
                         const double *wall_absorptivity, const fibrad_light_hits *hits) {
     fibrad_workspace *space;
-    if (heat == NULL || work == NULL || (rays > 0 && ray == NULL) || hits == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat == NULL || work == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
     if ((heat->spheres > 0 && absorptivity == NULL) || (heat->given_walls > 0 && wall_absorptivity == NULL))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    if (!are_rays(heat, ray, rays)) return FIBRAD_E_ARGUMENT;
     const size_t patches = heat->patches, bytes = (4 * patches + counts_of(heat, NULL).of_meshes) * sizeof(double);
     int status = fibrad_light_check(heat->scene, light, NULL);
     if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, bytes, &space);
