@@ -113,10 +113,13 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept, double *apart);
 
-/* A ray of light: the patch that it meets first, and the patch that it meets after it was reflected there. UINT32_MAX:
- * the ray brings no light. */
+/* Places of a path: where a ray comes from outside, and up to five reflections. */
+#define FIBRAD_LIGHT_HITS 6
+
+/* A ray of light: the patches that it meets one after another, up to the last one that was followed. UINT32_MAX: there
+ * is none. Only narrow light, which falls on few spheres, is followed beyond the first reflection. */
 typedef struct fibrad_light_ray {
-    uint32_t first, second;
+    uint32_t patch[FIBRAD_LIGHT_HITS];
     uint32_t slot; /* where it would end if there were neither spheres nor triangles; a number inside the kernel */
 } fibrad_light_ray;
 
