@@ -1,8 +1,9 @@
 /* scatter.c - rays of light: what walls take, and where reflected light arrives. SPDX-License-Identifier: MIT
  *
- * A ray comes from outside. It ends on the first sphere or wall that it meets, and a second ray leaves from there by
- * the cosine law. So light that falls on a part of a patch is reflected from where it falls. All light that a body
- * reflects is known. The rays that leave the body share it out. Patches that are lit wholly reflect without rays. */
+ * A ray comes from outside. It meets a sphere or wall, and goes on from there by the cosine law. So light that falls on
+ * a part of a patch is reflected from where it falls. All light that a body reflects first is known. The rays that
+ * leave the body share it out. Where few rays meet a body, patches that are lit wholly reflect without rays. Rays of
+ * narrow light go on for some hits, as long as there are many of them on a body. */
 #include "base/constants.h"
 #include "base/random.h"
 #include "base/vector.h"
@@ -313,7 +314,7 @@ static bool has_dense_rays(const reflection *r, uint32_t body, const double *cam
     double rays = 0, power = 0, squares = 0;
     for (uint32_t a = r->heat->first[body]; a < r->heat->first[body + 1]; a++)
         rays += ray * r->count[a], power += came[a], squares += came[a] * came[a];
-    return rays * squares >= beams_of_patch(r->heat) * power * power;
+    return power > 0 && rays * squares >= beams_of_patch(r->heat) * power * power;
 }
 
 /* Divides the light on a body into that on patches which are lit wholly, and the rest, which rays reflect. Sets what
@@ -341,10 +342,10 @@ static void divide_light(const reflection *r, uint32_t body, double absorptivity
 /* Has rays carry on what they have brought to a body with hit h. Patches reflect it if the rays are few. */
 static void carry_on(const reflection *r, uint32_t body, uint32_t h, double absorptivity,
                      const fibrad_light_hits *hits) {
-    if (h + 1 == FIBRAD_LIGHT_HITS || !has_dense_rays(r, body, r->came, SCATTER_RANDOM)) return;
+    const bool dense = has_dense_rays(r, body, r->came, SCATTER_RANDOM);
     for (uint32_t a = r->heat->first[body]; a < r->heat->first[body + 1]; a++) {
-        r->sent[h][a] = 1 - absorptivity, hits->spots[a] += r->came[a];
-        r->came[a] = 0;
+        if (dense) r->sent[h][a] = 1 - absorptivity;
+        *(dense ? &hits->spots[a] : &r->left[a]) += r->came[a];
     }
 }
 
@@ -364,7 +365,12 @@ static double brought_by(const reflection *r, const fibrad_light_ray *ray, uint3
     return power;
 }
 
-/* Finds what rays bring with hit h. */
+/* Whether a ray has no hit after hit h. */
+static bool ends_with(const fibrad_light_ray *ray, uint32_t h) {
+    return h + 1 == FIBRAD_LIGHT_HITS || ray->patch[h + 1] == FIBRAD_NONE;
+}
+
+/* Finds what rays bring with hit h. Patches reflect what comes by rays that end there. */
 static void bring_light(const reflection *r, const fibrad_light_ray *ray, uint32_t rays, uint32_t h) {
     const size_t bytes = r->heat->patches * sizeof *r->came;
     fibrad_zero(r->count, bytes);
@@ -373,8 +379,11 @@ static void bring_light(const reflection *r, const fibrad_light_ray *ray, uint32
         const uint32_t patch = ray[n].patch[h];
         const double power = h == 0 ? 0 : brought_by(r, &ray[n], h);
         if (patch == FIBRAD_NONE || (h > 0 && !(power > 0))) continue;
-        r->count[patch]++, r->came[patch] += power;
         r->squares[patch] += power * power / (h > 1 ? SCATTER_RANDOM : 1);
+        if (h > 0 && ends_with(&ray[n], h))
+            r->left[patch] += power;
+        else
+            r->count[patch]++, r->came[patch] += power;
     }
 }
 
@@ -441,8 +450,8 @@ int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad
             reflect_on(&r, fibrad_heat_body(heat, slot), h, wall_absorptivity[k], hits);
             if (slot < FIBRAD_WALLS) reflect_on(&r, fibrad_heat_beyond(heat, slot), h, wall_absorptivity[k], hits);
         }
-        for (size_t a = 0; a < patches; a++) hits->light[a] += r.came[a], r.left[a] += r.came[a];
     }
+    for (size_t a = 0; a < patches; a++) hits->light[a] += r.left[a];
     add_squares(&r, absorptivity, wall_absorptivity, hits->squares);
     return FIBRAD_OK;
 }
