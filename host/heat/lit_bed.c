@@ -53,8 +53,7 @@ int light_absorb(struct heat *h, double unit, fibrad_heat_sources *sources) {
     fibrad_light scaled[LIGHTS_MAX];
     if (!options) return FIBRAD_OK;
     for (uint32_t k = 0; k < options->lights; ++k) scaled[k] = options->light[k], scaled[k].flux *= unit;
-    fibrad_light_sources light = {.tolerance = h->error > 0 ? 1e-5 : 0,
-                                  .lights = options->lights,
+    fibrad_light_sources light = {.lights = options->lights,
                                   .light = scaled,
                                   .absorptivity = state->absorptivity,
                                   .wall_absorptivity = state->of_walls};

@@ -257,7 +257,7 @@ typedef struct fibrad_light_sources {
     uint32_t lights;                 /* number of lights */
     const double *absorptivity;      /* [spheres], 0 to 1, of the light */
     const double *wall_absorptivity; /* [walls], 0 to 1; NULL without walls */
-    double tolerance;                /* as in fibrad_heat_sources; 0: 1e-4 */
+    double tolerance;                /* as in fibrad_heat_sources; 0: 1e-5 */
 } fibrad_light_sources;
 
 /* What is absorbed of light from outside. The arrays belong to the caller; those of errors may be NULL. */

@@ -5,7 +5,7 @@
 
 #include "simple/bed.h"
 
-#define LIGHT_TOLERANCE 1e-4
+#define LIGHT_TOLERANCE 1e-5
 #define ROUNDING        1e-14 /* relative rounding error of areas that add up to the area of a light */
 
 /* Light that falls on a bed. */
