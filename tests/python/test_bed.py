@@ -302,7 +302,7 @@ def test_walls_find_their_temperatures():
     walls = ["xmin:at=-9:insulated", "box:temperature=500:emissivity=0.8", "zmax:at=9:power=9e5:emissivity=0.8"]
     places = [f"{name}:at={at}:temperature=500:emissivity=0.8" for name, at in (("xmax", 9), ("ymin", -9), ("ymax", 9), ("zmin", -9))]
     with fibrad.Bed([[0, 0, 0], [3, 0, 0]], 1, walls=[*walls, *places]) as bed:
-        bed.beams(directions=36, patches=24)
+        bed.beams(directions=72, patches=24)
         found = bed.solve([np.nan, 700], 0.5, power=[0, np.nan], walls=[fibrad.wall("zmax", power=0)])
         short = bed.advance(400, 60, capacity=5e4, emissivity=0.5, power=[0, 1e4])
         end = bed.advance(short.temperatures, 1e5, capacity=5e4, emissivity=0.5, power=[0, 1e4])
