@@ -1,4 +1,5 @@
-/* stl.c - triangles of an STL file, text or binary, which may be packed by gzip. SPDX-License-Identifier: MIT
+/* stl.c - triangles of an STL file, text or binary, or of an OBJ file; may be packed by gzip.
+ * SPDX-License-Identifier: MIT
  *
  * A binary file has 80 bytes, the number of triangles, and 50 bytes per triangle: normal, corners, two bytes without
  * meaning. Its first bytes may be "solid", as in a text file. So the length of the file decides. */
@@ -139,22 +140,89 @@ static int read_text(struct stl *stl, struct lines *lines) {
         status = lines_next(lines, &more);
         if (status || !more) break;
         status = fields_split_blanks(&fields, lines->text);
-        if (!status && fields.n > 0) status = read_line(stl, lines, &fields, &state);
+        if (!status && fields.n > 0 && *fields.at[0] != '#') status = read_line(stl, lines, &fields, &state);
     }
     if (!status && (state != OUTSIDE || lines->truncated)) status = lines_fault(lines, "the file ends within a solid");
     free(fields.at);
     return status;
 }
 
+/* ---- OBJ -------------------------------------------------------------------------------------------------------- */
+
+/* Vertices of an OBJ file. */
+struct vertices {
+    double (*at)[3];
+    size_t n;
+};
+
+/* Reads the face `f a b c ...`, whose corners may be a/texture/normal, and count from 1 or, below 0, from the last. A
+ * polygon becomes triangles about its first corner. */
+static int read_face(struct stl *stl, const struct lines *lines, const struct fields *fields,
+                     const struct vertices *vertices) {
+    const double *corner[3] = {NULL, NULL, NULL};
+    int status = fields->n < 4 ? lines_fault(lines, "a face has three corners or more") : STATUS_OK;
+    for (size_t k = 1; k < fields->n && !status; ++k) {
+        int64_t number;
+        fields->at[k][strcspn(fields->at[k], "/")] = 0;
+        status = lines_whole(lines, "the corner", fields->at[k], &number);
+        if (status) return status;
+        if (number < 0) number += (int64_t)vertices->n + 1;
+        if (number < 1 || number > (int64_t)vertices->n)
+            return lines_fault(lines, "there is no vertex %s", fields->at[k]);
+        corner[1] = corner[2], corner[2] = vertices->at[number - 1];
+        if (k == 1) corner[0] = corner[2];
+        if (k < 3) continue;
+        status = add_triangle(stl, lines->name, lines->number);
+        for (int c = 0; c < 3 && !status; ++c) memcpy(stl->corner[stl->n - 1][c], corner[c], sizeof **stl->corner);
+    }
+    return status;
+}
+
+/* Forgets the last solid if it has no triangles. */
+static void drop_empty(struct stl *stl) { stl->solids -= stl->n == 0 || stl->solid[stl->n - 1] + 1 < stl->solids; }
+
+/* Reads vertices and faces. Each object or group is a solid. Other lines have nothing of the surface. */
+static int read_obj(struct stl *stl, struct lines *lines) {
+    struct fields fields = {0};
+    struct vertices vertices = {0};
+    int status = add_solid(stl, "");
+    for (bool more = true, good = true; !status && !(status = lines_next(lines, &more)) && more;) {
+        lines->text[strcspn(lines->text, "#")] = 0;
+        status = fields_split_blanks(&fields, lines->text);
+        const char *first = fields.n > 0 ? fields.at[0] : "";
+        if (!status && strcmp(first, "v") == 0) {
+            if (fields.n > 4) fields.n = 4; /* behind x y z a weight or a colour may stand */
+            vertices.at = memory_grown(vertices.at, vertices.n, sizeof *vertices.at, &good);
+            status = good ? read_corner(lines, &fields, vertices.at[vertices.n++]) : message_memory();
+        } else if (!status && strcmp(first, "f") == 0) {
+            status = read_face(stl, lines, &fields, &vertices);
+        } else if (!status && (strcmp(first, "o") == 0 || strcmp(first, "g") == 0)) {
+            drop_empty(stl);
+            status = name_solid(stl, &fields);
+        }
+    }
+    if (stl->n > 0) drop_empty(stl);
+    free(vertices.at);
+    free(fields.at);
+    return status;
+}
+
 /* ---- either ----------------------------------------------------------------------------------------------------- */
 
-/* Whether the bytes can only be text: they begin with "solid", and the first 512 have no 0. */
-static bool is_text(const char *bytes, size_t size) {
+/* Whether the bytes can only be text that begins, behind blanks and comments, with one of these words: the first 512
+ * bytes have no 0. The list ends with NULL. */
+static bool is_text(const char *bytes, size_t size, const char *const word[]) {
     const char *begin = bytes + strspn(bytes, " \t\r\n\v\f");
-    return strncasecmp(begin, "solid", 5) == 0 && !memchr(bytes, 0, size < 512 ? size : 512);
+    while (*begin == '#') begin += strcspn(begin, "\r\n"), begin += strspn(begin, " \t\r\n\v\f");
+    const size_t length = strcspn(begin, " \t\r\n\v\f");
+    if (memchr(bytes, 0, size < 512 ? size : 512)) return false;
+    while (*word && (strlen(*word) != length || strncasecmp(begin, *word, length) != 0)) ++word;
+    return *word;
 }
 
 static int read_either(struct stl *stl, struct lines *lines) {
+    static const char *const solid[] = {"solid", NULL}, *const obj[] = {"v", "vn",     "vt",     "o", "g",
+                                                                        "s", "mtllib", "usemtl", NULL};
     char *bytes;
     size_t size;
     const int status = lines_rest(lines, &bytes, &size);
@@ -162,16 +230,18 @@ static int read_either(struct stl *stl, struct lines *lines) {
     if (size == 0) return message_at(STATUS_INPUT, lines->name, 0, "the file is empty");
     const uint32_t count = size >= HEAD ? word_of(bytes + HEAD - 4) : 0;
     if (size >= HEAD && size - HEAD == (uint64_t)count * RECORD) return read_records(stl, lines->name, bytes, count);
-    stl->text = is_text(bytes, size);
+    const bool is_obj = is_text(bytes, size, obj);
+    stl->text = is_obj || is_text(bytes, size, solid);
     if (stl->text) {
         lines_return(lines);
         lines_drop(lines);
-        return read_text(stl, lines);
+        return is_obj ? read_obj(stl, lines) : read_text(stl, lines);
     }
-    if (size < HEAD) return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file");
+    if (size < HEAD || !memchr(bytes, 0, size < 512 ? size : 512))
+        return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file and no OBJ file");
     return message_at(STATUS_INPUT, lines->name, 0,
-                      "the file has %zu bytes; a binary STL file of %u triangles has %llu", size, count,
-                      (unsigned long long)HEAD + (unsigned long long)count * RECORD);
+                      "this is no STL file: a binary one of %u triangles has %llu bytes, not %zu", count,
+                      (unsigned long long)HEAD + (unsigned long long)count * RECORD, size);
 }
 
 int stl_read(struct stl *stl, const char *path) {
