@@ -91,7 +91,7 @@ int contacts_read(const char *pattern, const struct bed *bed, const struct walls
     for (bool more = true, begun = false; !status;) {
         status = lines_next(&lines, &more);
         if (status || !more) break;
-        if (lines_blank(&lines) || *lines.text == '#') continue;
+        if (lines_blank(&lines) || lines_comment(&lines)) continue;
         status = fields_split(&fields, lines.text, ",; \t\r");
         if (!status && !begun && !is_header(&fields))
             status = message_at(STATUS_INPUT, lines.name, lines.number, "the header is not i,j,W/K");

@@ -21,8 +21,9 @@ struct reader {
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
-    static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data,  &format_vtk,
-                                                   &format_vtk_xml, &format_mercury, &format_table, NULL};
+    static const struct format *const formats[] = {&format_dump,    &format_xyz,        &format_data,
+                                                   &format_vtk,     &format_vtk_series, &format_vtk_xml,
+                                                   &format_mercury, &format_table,      NULL};
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;
