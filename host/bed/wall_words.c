@@ -236,11 +236,17 @@ static char cut_item(char **text) {
     return stop;
 }
 
-/* A shape with a value, as walls had them before 0.3.0. rest: what follows it. Says how it is written now. */
+/* A key where a wall is expected, or a shape with a value, as walls had them before 0.3.0. rest: what follows it. Says
+ * how it is written now. */
 static bool refuse_old(const char *item, const char *rest, char fault[WALL_FAULT]) {
     const int length = (int)strcspn(item, "=");
     const char *value = item + length + 1;
-    if (strcmp(value, "mesh") == 0)
+    char name[20];
+    snprintf(name, sizeof name, "%.*s", length, item);
+    if (find_key(name))
+        snprintf(fault, WALL_FAULT, "%.60s: a colon stands between the words of a wall, zmin:at=0:temperature=1300",
+                 item);
+    else if (strcmp(value, "mesh") == 0)
         snprintf(fault, WALL_FAULT, "%.60s:FILE is now mesh:FILE:name=%.*s", item, length, item);
     else if (strncmp(value, "open", 4) == 0)
         snprintf(fault, WALL_FAULT, "%.60s is now %.*s:open%s%.40s", item, length, item, value[4] ? ":at=" : "",
@@ -258,7 +264,8 @@ static bool refuse_old(const char *item, const char *rest, char fault[WALL_FAULT
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]) {
     char *item = *text, *number[3];
     char stop = cut_item(text);
-    if (strchr(item, '=')) return refuse_old(item, stop == ':' ? *text : "", fault);
+    if (strchr(item, '=') || (find_key(item) && !wall_words_shape(item)))
+        return refuse_old(item, stop == ':' ? *text : "", fault);
     if (!begin_wall(wall, item, allowed, fault)) return false;
     if (shape_words(wall) > 0) {
         int count = stop == ':';
