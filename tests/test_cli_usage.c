@@ -96,6 +96,9 @@ static const struct {
      "--wall: 'top' is no wall; there are box, auto, xmin ... zmax, cylinder:X,Y,R, xcylinder:Y,Z,R, ycylinder:X,Z,R "
      "and mesh:FILE"},
     {{"factors", MONO, "--wall", "zmin=3"}, "--wall: zmin=3 is now zmin:at=3"},
+    {{"heat", MONO, "--wall", "zmin:at=0,temperature=1300"},
+     "--wall: temperature=1300: a colon stands between the words of a wall, zmin:at=0:temperature=1300"},
+    {{"conductivity", MONO, "--emissivity=.5", "--temperature=2000:300:100"}, "is not FROM:TO:STEP, which ascends"},
     {{"factors", MONO, "--wall", "zmin:temperature=3"},
      "--wall: zmin: 'temperature' is of no use here; there are at, open"},
     {{"factors", MONO, "--wall", "xmin,xmax,ymin,ymax,zmin"}, "add zmax:open (zmax:open:at=H"},
@@ -139,7 +142,7 @@ static const struct {
     {{"pair", "1", "1", "1", "--method", "surface", "--nf", "56"}, "--nf: 56 is not built in; 8, 13, 21"},
     {{"pair", "1", "1", "1", "--nf", "55"}, "are for --method surface"},
     {{"factors", MONO, "--nf", "55"}, "--method surface and --nf are of fibrad pair and fibrad reproduce"},
-    {{"factors", MONO, "--method", "magic"}, "'magic' is not a method"},
+    {{"factors", MONO, "--method", "magic"}, "'magic' is none of beam, cast and mc"},
     {{"factors", MONO, "--method", "exact"}, "--method exact is for pairs only"},
     {{"factors", MONO, "--rays", "100"}, "--rays and --seed are for --method cast and mc"},
     {{"factors", MONO, "--method=cast", "--rays", "0"}, "--rays: '0' is not a whole number from 1 to 4294967295"},

@@ -255,7 +255,8 @@ int option_method(const char *text, void *method) {
             *(enum method *)method = (enum method)k;
             return STATUS_OK;
         }
-    return message(STATUS_USAGE, "--method: '%.40s' is not a method", text);
+    return message(STATUS_USAGE, "--method: '%.40s' is none of beam, cast and mc; of fibrad pair also exact, surface",
+                   text);
 }
 
 int methods_check(struct method_options *m) {
