@@ -455,6 +455,7 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick programs coup
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
 reproduce: $(BUILD)/fibrad
 	$(BUILD)/fibrad reproduce -o docs/figures
+	gnuplot -e "folder='docs/figures'" bench/plot_papers.gp
 
 # installs the named Debian packages that are missing
 DEPS = .ci/deps

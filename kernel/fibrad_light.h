@@ -39,8 +39,8 @@ typedef enum fibrad_light_shape {
 /* Light from outside. If all fields but direction and flux are zero, the light is parallel and enters through all
  * open faces.
  *
- * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
- * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
+ * Light with a half-angle has directions that fill a cone evenly: its radiance is the same in all of them. Its flux is
+ * what a plane at right angles to `direction` receives. The sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
  * The box of the spheres is the box of their centres, wider by the largest radius on all sides. It also holds the
  * corners of triangles, but it ends at planes and periods. On periodic axes a disc or rectangle is repeated, and must

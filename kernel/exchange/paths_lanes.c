@@ -48,7 +48,7 @@ struct grey_path {
 };
 
 /* Coordinate d of a path. The first QUASI_COORDINATES coordinates of paths from spheres are those of the additive
- * recurrence with the steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c. Those
+ * recurrence with the steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of row/cast_lanes.c. Those
  * of paths from walls are of Sobol's sequence. All further coordinates are random. */
 static double path_coordinate(const fibrad_paths *paths, const struct grey_path *path, uint32_t d) {
     static const uint64_t step[QUASI_COORDINATES] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),

@@ -73,7 +73,7 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
         fibrad_footprint_make(f, scene, light, k);
         for (uint32_t p = 0; p < f->pieces; p++) area[f->piece[p].slot] += f->piece[p].sign * f->piece[p].area;
         all += fibrad_footprint_area(f);
-        fibrad_light_add_ends(scene, area, light->flux / count, &sum);
+        fibrad_light_add_ends(scene, area, f->flux, &sum);
     }
     if (!(all > 0)) {
         if (fault != NULL) fault->why = FIBRAD_WHY_DARK;

@@ -9,6 +9,7 @@
 #include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
+#include "row/wall_share_lanes.h"
 #include "sample/direction.h"
 #include "scene/walls.h"
 #include "row/window_lanes.h"
@@ -162,6 +163,17 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
  * then smaller. Otherwise beams would meet walls that are hidden: docs/methods.md section 9. */
 #define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
+/* Whether two directions from a point meet different walls, and one of them rises and the other falls across a plane.
+ * Between them other spheres may come in view, at any distance. */
+static bool crosses_horizon(const fibrad_scene *scene, const double origin[3], const double a[3], const double b[3]) {
+    const fibrad_container *c = &scene->container;
+    bool crosses = false;
+    double distance;
+    for (int axis = 0; axis < 3; axis++)
+        if (c->low[axis] > -__builtin_inf() || c->high[axis] < __builtin_inf()) crosses |= a[axis] * b[axis] < 0;
+    return crosses && fibrad_walls_exit(scene, origin, a, &distance) != fibrad_walls_exit(scene, origin, b, &distance);
+}
+
 /* The patch that the beam of open point p of window k meets. */
 static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
                              const fibrad_points *points, uint32_t k, uint32_t p) {
@@ -187,6 +199,12 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
         const double e = frame[axis], f = frame[3 + axis], g = frame[6 + axis];
         origin[axis] = work->centre[axis] + work->unit * n[axis];
         w[axis] = g + (du * e + dv * f);
+    }
+    if (crosses_horizon(heat->scene, origin, frame + 6, w)) {
+        const double length = fibrad_sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), at[2] = {x, y};
+        const double way[3] = {w[0] / length, w[1] / length, w[2] / length};
+        if (!LANED(fibrad_beam_turned)(work, frame, at, way))
+            return fibrad_heat_ends(heat, origin, frame + 6, FIBRAD_NO_SIDE, 0);
     }
     return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
 }

@@ -270,8 +270,8 @@ static void begin_row(fibrad_workspace *work, const fibrad_scene *scene, uint32_
     fibrad_wall_sums_begin(&work->walls->sums, windows->count << windows->both);
 }
 
-/* What the windows of a row have in common. Directions do not pair off along the axis of walls. */
-static fibrad_window_set set_of_windows(const fibrad_scene *scene, const beam_windows *windows) {
+/* What the windows of a row have in common. */
+static fibrad_window_set set_of_windows(const beam_windows *windows) {
     const bool masked = windows->chords > 0;
     const double square = 32.0 * windows->words * windows->chords; /* points of masks in the square about a window */
     const double size = masked ? FIBRAD_PI / 4 * square : windows->size, most = masked ? square : windows->size;
@@ -282,8 +282,6 @@ static fibrad_window_set set_of_windows(const fibrad_scene *scene, const beam_wi
                                .whole = size,
                                .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
                                           fibrad_grid_middle(most * most * directions)},
-                               .mixed = windows->lines != NULL ||
-                                        (!windows->turned && fibrad_walls_only(&scene->container) < 2),
                                .ends = windows->lines == NULL && !masked};
 }
 
@@ -339,7 +337,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     windows.open = open;
     const bool masked = windows.chords > 0, lines = windows.lines != NULL;
     begin_row(work, scene, i, rule, &windows);
-    const fibrad_window_set set = set_of_windows(scene, &windows);
+    const fibrad_window_set set = set_of_windows(&windows);
     status = sum_windows(work, &windows, &set, &sums);
     if (status != FIBRAD_OK) return status;
     row->fallbacks = work->areas.fallbacks;
