@@ -828,6 +828,8 @@ TEST(vtk_collections_are_read) {
     ck_assert_msg(try_options(series, strlen(series), &first) == 0, "%s", said);
     ck_assert(bed.n == 2 && bed.r[1] == 2 && bed.frame == 0);
     expect_refusal(series, strlen(series), &third, 0, "there is no frame 2; the last is 1");
+    const char empty[] = "<VTKFile type='Collection'>\n</VTKFile>\n";
+    expect_refusal(empty, sizeof empty - 1, &(struct read_options){0}, 0, "there is no frame in the file");
     const char joined[] = "<VTKFile type='Collection'><DataSet file='a.vtp'/><DataSet file='b.vtp'/>";
     expect_refusal(joined, sizeof joined - 1, &(struct read_options){0}, 1,
                    "each DataSet must stand on a line of its own");

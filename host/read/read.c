@@ -72,6 +72,7 @@ static int report_end_of_file(const struct reader *r) {
     if (part && r->frame > 0) return source_fail(source, "%s; the last whole frame is %" PRId64, why, r->frame - 1);
     if (part) return source_fail(source, "%s", why);
     if (r->found) return STATUS_OK;
+    if (r->frame == 0) return message_at(STATUS_INPUT, source->lines.name, 0, "there is no frame in the file");
     return message_at(STATUS_INPUT, source->lines.name, 0, "there is no frame %" PRId64 "; the last is %" PRId64,
                       source->options.frames.begin, r->frame - 1);
 }
