@@ -246,10 +246,11 @@ TEST(names_and_ends_of_tables) {
 /* A coordinate or a radius out of range is told with its value and the range. */
 TEST(values_out_of_range_of_spheres) {
     static const char *const rows[][2] = {
-        {"3,0,0,1e300", "3: sphere 1: r is 1e+300; it must be within 1e-150 and 1e+150"},
-        {"3,0,0,1e-300", "3: sphere 1: r is 1e-300; it must be within 1e-150 and 1e+150"},
-        {"3,-1e200,0,1", "3: sphere 1: y is -1e+200; it must be within -1.5e+13 and 1.5e+13, 3e13 times the smallest"},
-        {"3,0,1e14,1", "3: sphere 1: z is 1e+14; it must be within -1.5e+13 and 1.5e+13"}};
+        {"3,0,0,1e300", "3: sphere 1: r is 1e+300: the radius is not above 0, or not within 1e-150 to 1e150"},
+        {"3,0,0,1e-300", "3: sphere 1: r is 1e-300: the radius"},
+        {"3,-1e200,0,1",
+         "3: sphere 1: y is -1e+200: a coordinate is not a number, or beyond 3e13 smallest radii or 1e150"},
+        {"3,0,1e14,1", "3: sphere 1: z is 1e+14: a coordinate"}};
     for (int k = 0; k < 4; ++k) {
         const char *bed = write_file("n.csv", formatted("x,y,z,r\n0,0,0,.5\n%s\n", rows[k][0]));
         FAIL_WITH(3, "factors", bed);

@@ -676,7 +676,6 @@ TEST(data_files_need_no_style) {
         {10, NO_STYLE("1") "1 1 7 0 0.3 0.3 0.3\n"},                              /* full: molecule, type, charge */
         {10, NO_STYLE("1") "1 1 0.2 1000 0.3 0.3 1.3\n"},                         /* beyond the box */
         {10, NO_STYLE("1") "1 1 0.5 0.3 0.3 0.3\n"},
-        {10, NO_STYLE("1") "1 1 0.2 1000 0.3 0.3 0.3 a\n"},
     };
     for (size_t k = 0; k < sizeof unknown / sizeof *unknown; ++k)
         expect_refusal(unknown[k].text, strlen(unknown[k].text), &(struct read_options){0}, unknown[k].line,
@@ -828,9 +827,9 @@ TEST(vtk_collections_are_read) {
     ck_assert_msg(try_options(series, strlen(series), &first) == 0, "%s", said);
     ck_assert(bed.n == 2 && bed.r[1] == 2 && bed.frame == 0);
     expect_refusal(series, strlen(series), &third, 0, "there is no frame 2; the last is 1");
-    const char empty[] = "<VTKFile type='Collection'>\n</VTKFile>\n";
+    const char empty[] = "<VTKFile type='Collection'>\n<Collection/>\n</VTKFile>\n";
     expect_refusal(empty, sizeof empty - 1, &(struct read_options){0}, 0, "there is no frame in the file");
-    const char joined[] = "<VTKFile type='Collection'><DataSet file='a.vtp'/><DataSet file='b.vtp'/>";
+    const char joined[] = "<VTKFile type='Collection'><Collection><DataSet file='a.vtp'/><DataSet file='b.vtp'/>";
     expect_refusal(joined, sizeof joined - 1, &(struct read_options){0}, 1,
                    "each DataSet must stand on a line of its own");
     for (int p = 0; p < 4; ++p) unlink(piece[p]);

@@ -110,7 +110,7 @@ static const struct {
              {"box:open=zmax", "box: 'open' is of no use here"},
              {"zmin=0.1", "zmin=0.1 is not how a wall is written: zmin:at=VALUE:temp"},
              {"temperature=1300", "temperature=1300 is not how a wall is written: zmin:at=VALUE"},
-             {"zmin,open", "mesh:FILE:name=NAME are, with colons between the words of a wall"},
+             {"zmin,open", "open is not how a wall is written: zmin:at=VALUE"},
              {"tub=mesh:a.stl", "tub=mesh is not how"},
              {"cylinder=600,.9,0,0,1", "cylinder=600,.9,0,0,1 is not how"}};
 

@@ -50,25 +50,6 @@ static int bed_overlap(const struct bed *bed, const char *file, uint32_t first, 
                       bed_line_text(bed, other, place));
 }
 
-/* Refuses a value of a sphere, with its range. */
-static int bed_refuse(const struct bed *bed, const char *file, uint32_t i, int why) {
-    const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
-    const long long name = bed_name(bed, i);
-    double least = bed->r[i];
-    int axis = 0;
-    for (int k = 1; k < 3; ++k)
-        if (fabs(at[k]) > fabs(at[axis])) axis = k;
-    for (uint32_t k = 0; k < bed->n; ++k) least = fmin(least, bed->r[k]);
-    if (why == FIBRAD_WHY_RADIUS)
-        return message_at(STATUS_INPUT, file, bed->line[i], "sphere %lld: r is %g; it must be within %g and %g", name,
-                          bed->r[i], FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX);
-    if (why == FIBRAD_WHY_PLACE)
-        return message_at(STATUS_INPUT, file, bed->line[i],
-                          "sphere %lld: %c is %g; it must be within -%g and %g, 3e13 times the smallest radius", name,
-                          'x' + axis, at[axis], 3e13 * least, 3e13 * least);
-    return message_at(STATUS_INPUT, file, bed->line[i], "sphere %lld: %s", name, fibrad_why_text(why));
-}
-
 int bed_status(const struct bed *bed, const char *file, int status, const fibrad_fault *fault) {
     const uint32_t first = fault->first, second = fault->second;
     const bool known = first < bed->n && second < bed->n;
@@ -78,9 +59,16 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
     if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);
     if (status == FIBRAD_E_GEOMETRY)
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
-    if (known && fault->why) return bed_refuse(bed, file, first, fault->why);
     if (!known)
         return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
+    const bool place = fault->why == FIBRAD_WHY_PLACE;
+    const double value[] = {bed->x[first], bed->y[first], bed->z[first], bed->r[first]};
+    int worst = place ? 0 : 3;
+    for (int axis = 1; axis < 3 && place; ++axis)
+        if (fabs(value[axis]) > fabs(value[worst])) worst = axis;
+    if (place || fault->why == FIBRAD_WHY_RADIUS)
+        return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %c is %g: %s",
+                          (long long)bed_name(bed, first), "xyzr"[worst], value[worst], fibrad_why_text(fault->why));
     return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %s", (long long)bed_name(bed, first),
                       fibrad_status_text(status));
 }

@@ -178,10 +178,7 @@ static int read_face(struct stl *stl, const struct lines *lines, const struct fi
     return status;
 }
 
-/* Forgets the last solid if it has no triangles. */
-static void drop_empty(struct stl *stl) { stl->solids -= stl->n == 0 || stl->solid[stl->n - 1] + 1 < stl->solids; }
-
-/* Reads vertices and faces. Each object or group is a solid. Other lines have nothing of the surface. */
+/* Reads vertices and faces. Other lines have nothing of the surface. The file is one solid. */
 static int read_obj(struct stl *stl, struct lines *lines) {
     struct fields fields = {0};
     struct vertices vertices = {0};
@@ -196,12 +193,8 @@ static int read_obj(struct stl *stl, struct lines *lines) {
             status = good ? read_corner(lines, &fields, vertices.at[vertices.n++]) : message_memory();
         } else if (!status && strcmp(first, "f") == 0) {
             status = read_face(stl, lines, &fields, &vertices);
-        } else if (!status && (strcmp(first, "o") == 0 || strcmp(first, "g") == 0)) {
-            drop_empty(stl);
-            status = name_solid(stl, &fields);
         }
     }
-    if (stl->n > 0) drop_empty(stl);
     free(vertices.at);
     free(fields.at);
     return status;
@@ -209,20 +202,14 @@ static int read_obj(struct stl *stl, struct lines *lines) {
 
 /* ---- either ----------------------------------------------------------------------------------------------------- */
 
-/* Whether the bytes can only be text that begins, behind blanks and comments, with one of these words: the first 512
- * bytes have no 0. The list ends with NULL. */
-static bool is_text(const char *bytes, size_t size, const char *const word[]) {
-    const char *begin = bytes + strspn(bytes, " \t\r\n\v\f");
-    while (*begin == '#') begin += strcspn(begin, "\r\n"), begin += strspn(begin, " \t\r\n\v\f");
-    const size_t length = strcspn(begin, " \t\r\n\v\f");
-    if (memchr(bytes, 0, size < 512 ? size : 512)) return false;
-    while (*word && (strlen(*word) != length || strncasecmp(begin, *word, length) != 0)) ++word;
-    return *word;
+/* Skips blanks and comments. */
+static const char *first_word(const char *text) {
+    static const char blanks[] = " \t\r\n\v\f";
+    for (text += strspn(text, blanks); *text == '#'; text += strspn(text, blanks)) text += strcspn(text, "\r\n");
+    return text;
 }
 
 static int read_either(struct stl *stl, struct lines *lines) {
-    static const char *const solid[] = {"solid", NULL}, *const obj[] = {"v", "vn",     "vt",     "o", "g",
-                                                                        "s", "mtllib", "usemtl", NULL};
     char *bytes;
     size_t size;
     const int status = lines_rest(lines, &bytes, &size);
@@ -230,15 +217,15 @@ static int read_either(struct stl *stl, struct lines *lines) {
     if (size == 0) return message_at(STATUS_INPUT, lines->name, 0, "the file is empty");
     const uint32_t count = size >= HEAD ? word_of(bytes + HEAD - 4) : 0;
     if (size >= HEAD && size - HEAD == (uint64_t)count * RECORD) return read_records(stl, lines->name, bytes, count);
-    const bool is_obj = is_text(bytes, size, obj);
-    stl->text = is_obj || is_text(bytes, size, solid);
+    const bool text = size < HEAD || !memchr(bytes, 0, size < 512 ? size : 512);
+    const bool solid = strncasecmp(first_word(bytes), "solid", 5) == 0;
+    stl->text = text && (solid || strncmp(bytes, "v ", 2) == 0 || strstr(bytes, "\nv "));
     if (stl->text) {
         lines_return(lines);
         lines_drop(lines);
-        return is_obj ? read_obj(stl, lines) : read_text(stl, lines);
+        return solid ? read_text(stl, lines) : read_obj(stl, lines);
     }
-    if (size < HEAD || !memchr(bytes, 0, size < 512 ? size : 512))
-        return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file and no OBJ file");
+    if (text) return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file and no OBJ file");
     return message_at(STATUS_INPUT, lines->name, 0,
                       "this is no STL file: a binary one of %u triangles has %llu bytes, not %zu", count,
                       (unsigned long long)HEAD + (unsigned long long)count * RECORD, size);

@@ -10,7 +10,7 @@
 #include "read/read_format.h"
 #include "text/read_number.h"
 
-enum { IMAGE_FLAGS = 3, COLUMNS_MAX = 1000, WORD = 40, STYLE = 80, LONGEST = 11 };
+enum { IMAGE_FLAGS = 3, COLUMNS_MAX = 1000, WORD = 40, STYLE = 80 };
 
 /* The known styles of atoms and their columns. */
 static const struct {
@@ -133,16 +133,6 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
 
 /* ---- atoms ------------------------------------------------------------------------------------------------------ */
 
-/* Reads the numbers of the current line up to a comment. Returns how many there are, at most LONGEST. 0: there are
- * other words. */
-static int numbers_of(const struct lines *lines, double value[LONGEST]) {
-    char word[WORD];
-    int n = 0, length;
-    for (const char *text = lines->text; n < LONGEST && sscanf(text, "%39s%n", word, &length) == 1; text += length)
-        if (!number_read(word, &value[n++])) return *word == '#' ? n - 1 : 0;
-    return n;
-}
-
 /* Whether a row of spheres may have its diameter and density, and its centre, at these columns. */
 static bool row_fits(int n, const double *value, int diameter, int centre, const struct bed *bed) {
     bool good = (n == 7 || n == 7 + IMAGE_FLAGS) && value[diameter] > 0 && value[diameter + 1] > 0;
@@ -161,13 +151,14 @@ static int guess_style(struct source *source, int64_t atoms, char *style, const 
     int status;
     lines_keep(lines);
     for (int64_t row = 0; row < atoms && row < 100; ++row) {
-        double value[LONGEST];
+        double v[7 + IMAGE_FLAGS + 1];
         status = lines_next_text(lines, &more);
         if (status || !more) return status;
-        const int n = numbers_of(lines, value);
+        const int n = sscanf(lines->text, "%lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3],
+                             &v[4], &v[5], &v[6], &v[7], &v[8], &v[9], &v[10]);
         atomic = atomic && (n == 5 || n == 5 + IMAGE_FLAGS);
-        sphere = sphere && row_fits(n, value, 2, 4, bed);
-        hybrid = hybrid && row_fits(n, value, 5, 2, bed);
+        sphere = sphere && row_fits(n, v, 2, 4, bed);
+        hybrid = hybrid && row_fits(n, v, 5, 2, bed);
         if (!atomic && !sphere && !hybrid)
             return source_fail(source, "the style of the atoms is not said, and these columns do not tell it; write "
                                        "`Atoms # sphere` above them if they are id type diameter density x y z");

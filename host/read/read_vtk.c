@@ -40,12 +40,9 @@ static bool begins_near(const struct source *source, const char *wanted) {
 
 static bool is_legacy(const struct source *source) { return source_begins(source, "# vtk DataFile"); }
 
-static bool is_series(const struct source *source) {
-    return begins_near(source, "<VTKFile") &&
-           (begins_near(source, "type=\"Collection\"") || begins_near(source, "type='Collection'"));
-}
-
 static bool is_xml(const struct source *source) { return begins_near(source, "<VTKFile"); }
+
+static bool is_series(const struct source *source) { return is_xml(source) && begins_near(source, "<Collection"); }
 
 /* Refuses a piece that lacks an array. */
 static int vtk_check(const struct vtk_file *file, const struct vtk_grid *grid) {
@@ -222,40 +219,34 @@ static int want(struct vtk_file *file) {
     return status;
 }
 
-/* Goes through the files of the next time, and reads them if there is a vtk_file. *more: there is such a time. */
-static int next_time(struct source *source, struct vtk_file *reads, bool *more) {
+/* Goes through the files of the next time, and reads them if there is a vtk_file. */
+static int next_time(struct source *source, struct vtk_file *reads) {
     char first[VTK_WORD], time[VTK_WORD], name[VTK_WORD];
-    bool line;
+    bool more;
     int status = STATUS_OK;
-    *more = false;
-    while (!status && !(status = lines_next(&source->lines, &line)) && line) {
+    source->found = FOUND_END;
+    while (!status && !(status = lines_next(&source->lines, &more)) && more) {
         const char *text = source->lines.text;
         if (!vtk_next_set(&text, time, name)) continue;
         if (strstr(text, "<DataSet")) return source_fail(source, "each DataSet must stand on a line of its own");
-        if (*more && strcmp(time, first) != 0) return lines_hold(&source->lines), STATUS_OK;
+        if (source->found == FOUND_FRAME && strcmp(time, first) != 0) return lines_hold(&source->lines), STATUS_OK;
         memcpy(first, time, sizeof first);
-        *more = true;
+        source->found = FOUND_FRAME;
         if (reads) status = read_piece(name, reads);
     }
     return status;
 }
 
-static int skip_series(struct source *source) {
-    bool more;
-    const int status = next_time(source, NULL, &more);
-    source->found = more ? FOUND_FRAME : FOUND_END;
-    return status;
-}
+static int skip_series(struct source *source) { return next_time(source, NULL); }
 
 /* read NULL: a series. */
 static int read_vtk(struct source *source, read_grid *read, struct bed *bed) {
-    bool more;
     const struct read_options *options = &source->options;
     struct vtk_file file = {.source = source, .bed = bed, .count = EXTRAS + options->extras + options->rules};
     file.wanted = calloc(file.count, sizeof *file.wanted);
     file.factor = calloc(options->extras + 1, sizeof *file.factor);
     int status = file.wanted && file.factor ? want(&file) : message_memory();
-    if (!status) status = read ? read_file(&file, read) : next_time(source, &file, &more);
+    if (!status) status = read ? read_file(&file, read) : next_time(source, &file);
     for (size_t k = 0; file.wanted && k < file.count; ++k) free(file.wanted[k].values);
     free(file.wanted);
     free(file.factor);

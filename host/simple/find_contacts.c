@@ -96,32 +96,22 @@ static int sort_class(struct search *s, struct size_class *class) {
     return note_starts(s, class);
 }
 
-/* Refuses numbers with which the search would not end. fibrad_scene_init has checked a bed, and couplings their walls
- * and meshes. */
-static int check_spheres(const struct search *s) {
-    double largest = 0;
-    for (uint32_t i = 0; i < s->n; ++i) {
-        const double *at = s->at[i];
-        for (int axis = 0; axis < 3; ++axis)
-            if (!(fabs(at[axis]) <= FIBRAD_LENGTH_MAX)) return FIBRAD_E_ARGUMENT;
-        if (!(at[3] >= FIBRAD_LENGTH_MIN && at[3] <= FIBRAD_LENGTH_MAX)) return FIBRAD_E_ARGUMENT;
-        largest = larger_of(largest, at[3]);
-    }
-    for (int axis = 0; axis < 3; ++axis)
-        if (s->period[axis] > 0 ? s->period[axis] < largest : s->period[axis] != 0) return FIBRAD_E_GEOMETRY;
-    return FIBRAD_OK;
-}
-
-/* Sorts spheres into classes and cells. */
+/* Sorts spheres into classes and cells. Refuses numbers with which the search would not end. */
 static int sort_spheres(struct search *s) {
     double largest = 0;
     for (uint32_t i = 0; i < s->n; ++i) {
+        const double *at = s->at[i];
+        if (!(fabs(at[0]) + fabs(at[1]) + fabs(at[2]) <= 3 * FIBRAD_LENGTH_MAX && at[3] >= FIBRAD_LENGTH_MIN &&
+              at[3] <= FIBRAD_LENGTH_MAX))
+            return FIBRAD_E_ARGUMENT;
         largest = larger_of(largest, s->at[i][3]);
         for (int axis = 0; axis < 3; ++axis) {
             s->low[axis] = i > 0 ? smaller_of(s->low[axis], s->at[i][axis]) : s->at[i][axis];
             s->high[axis] = i > 0 ? larger_of(s->high[axis], s->at[i][axis]) : s->at[i][axis];
         }
     }
+    for (int axis = 0; axis < 3; ++axis)
+        if (s->period[axis] != 0 && !(s->period[axis] >= largest)) return FIBRAD_E_GEOMETRY;
     uint32_t to = 0;
     int status = FIBRAD_OK;
     for (uint32_t c = 0; c < CLASSES_MAX && to < s->n && !status; ++c) {
@@ -282,7 +272,6 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
     int status = s.at && s.celled ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (int axis = 0; axis < 3 && config; ++axis) s.period[axis] = config->period[axis];
     if (!status) copy_spheres(&s, spheres);
-    if (!status) status = check_spheres(&s);
     if (!status) status = sort_spheres(&s);
     if (!status) status = find_pairs(&s);
     for (uint32_t b = 0; config && b < config->walls && !status; ++b)
