@@ -11,6 +11,8 @@
 #include "simple/contact_list.h"
 #include "couple/insitu.h"
 
+#define PARTS_MOST 100 /* of a step of heat */
+
 /* The indices of both ends in the list of particles; a wall has that of the wall plus the number of particles. */
 struct conductor {
     uint32_t first, second;
@@ -123,6 +125,47 @@ static void add_flows(const fibrad_insitu_build *b, const fibrad_insitu_state *s
     }
 }
 
+/* Conducts in equal parts of a step of heat, as many as explicit steps need, and makes powers those of the mean over
+ * the parts. The first part is in `power` already. */
+static int add_parts(fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts, const fibrad_insitu_state *state,
+                     const struct conductor *conductor, uint32_t count, double *power, double *conductance,
+                     fibrad_insitu_conducted *sum) {
+    const size_t all = b->own + b->halo, n = b->bed->n;
+    const uint32_t rank = (uint32_t)b->s->rank, *order = b->s->order.at;
+    fibrad_particle *p = b->to->particle.at;
+    double most = 0;
+    for (size_t i = 0; i < n && contacts->capacity; ++i)
+        most = fmax(most, 2 * conductance[i] * contacts->seconds / contacts->capacity[i]);
+    MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPI_DOUBLE, MPI_MAX, b->s->comm);
+    const double parts = fmax(1, fmin(PARTS_MOST, ceil(2 * most)));
+    sum->parts = parts;
+    if (parts == 1) return FIBRAD_OK;
+    fibrad_link *link = NULL;
+    fibrad_place *place = malloc((b->halo + 1) * sizeof *place);
+    double *t = malloc((all + 1) * sizeof *t);
+    int status = fibrad_agree(b->s->comm, place && t ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    for (size_t k = 0, used = 0; k < all && !status; ++k)
+        if (p[k].owner.rank != rank) place[used++] = p[k].owner;
+    if (!status) status = fibrad_link_to(&link, b->s->comm, b->own, place, b->halo);
+    for (int part = 1; part < (int)parts && !status; ++part) {
+        for (size_t i = 0; i < b->own; ++i) {
+            const uint32_t at = order[i];
+            t[i] = state->temperature[at] + power[at] * contacts->seconds / (parts * contacts->capacity[at]);
+        }
+        fibrad_link_forward(link, t, 1);
+        for (size_t k = 0, used = b->own; k < all; ++k)
+            p[k].temperature = t[p[k].owner.rank == rank ? p[k].owner.index : used++];
+        add_flows(b, state, conductor, count, power, conductance, sum);
+    }
+    for (size_t i = 0; i < n; ++i) power[i] /= parts, conductance[i] /= parts * parts;
+    sum->contacts /= parts, sum->particles /= parts;
+    for (uint32_t k = 0; k < b->bed->walls; ++k) sum->wall[k] /= parts, sum->conductance[k] /= parts;
+    fibrad_link_free(link);
+    free(place);
+    free(t);
+    return status;
+}
+
 int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
                           const fibrad_insitu_state *state, double *power, double *conductance,
                           fibrad_insitu_conducted *conducted) {
@@ -146,7 +189,12 @@ int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contac
     if (!status) {
         for (size_t i = 0; i < bed->n; ++i) power[i] = conductance[i] = 0;
         add_flows(&b, state, conductor, count, power, conductance, &sum);
+        status = add_parts(&b, contacts, state, conductor, count, power, conductance, &sum);
+    }
+    if (!status) {
+        const double parts = sum.parts;
         MPI_Allreduce(MPI_IN_PLACE, &sum, sizeof sum / sizeof(double), MPI_DOUBLE, MPI_SUM, s->comm);
+        sum.parts = parts;
         if (conducted) *conducted = sum;
         s->seconds_powers += MPI_Wtime() - begun;
     } else if (!s->message[0]) {

@@ -125,12 +125,13 @@ typedef struct fibrad_insitu_config {
 
 /* The bed for which rows are made. Box, walls, openings and triangles are the same on all ranks. */
 typedef struct fibrad_insitu_bed {
-    double low[3], high[3];                   /* L, the box, used along periodic axes only */
+    double low[3], high[3];                   /* L, the box, used along periodic axes and for openings */
     int periodic[3];                          /* 1: the bed repeats along the axis with the period high - low */
     const fibrad_wall *wall;                  /* [walls], walls; a particle beyond one is a stray, see above */
     const double *wall_emissivity;            /* [walls], 0 to 1 */
     uint32_t walls;                           /* number of walls, 0 to FIBRAD_WALLS_MAX */
-    const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end */
+    const fibrad_plane *opening;              /* [openings]; `at` NaN: where the particles end; infinite: at the end of
+                                                 the box, or where the particles end if that is farther out */
     uint32_t openings;                        /* 0 to 6 */
     const struct fibrad_triangles *triangles; /* of all meshes, repeated along periodic axes; NULL: none */
     size_t n;                                 /* number of particles that this rank owns */
@@ -233,8 +234,9 @@ int fibrad_insitu_follow(fibrad_insitu *insitu, const fibrad_insitu_bed *bed, ui
 int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state, double *power,
                          fibrad_insitu_totals *totals);
 
-/* What is not known of the row of each particle, as a fraction of its emission.
- *   Output   error[n][2]: what passed the cutoff when the row was made, and the estimated error of the row. n and the
+/* What is not known of each particle: the part of its row beyond the cutoff, and the error of its power.
+ *   Output   error[n][2]: the fraction of its emission that passed the cutoff when the row was made, and the estimated
+ *            error of its last power [sigma K^4 L^2], from the noise of its row and of rows that have it. n and the
  *            order are those of the state of the last call of fibrad_insitu_powers. The first is 1 for a particle that
  *            has no row. Both are 0 for a particle that is left out.
  *   Errors   _ARGUMENT
@@ -258,6 +260,8 @@ typedef struct fibrad_insitu_contacts {
     double scale;               /* of the radii of spots; 0: 1 */
     double gas;                 /* power/(L K), conductivity of the gas in narrow gaps; 0: none */
     double gas_least;           /* L, least gap that counts; 0: 1e-7 of the smaller radius */
+    const double *capacity;     /* energy/K, heat capacities [n] of the bed, above 0 to INFINITY; NULL: one part */
+    double seconds;             /* of the step of heat for which the powers are; unused without capacity */
 } fibrad_insitu_contacts;
 
 /* What all contacts conduct, the same on all ranks. Powers of particles and walls add up to 0, to rounding. */
@@ -266,16 +270,18 @@ typedef struct fibrad_insitu_conducted {
     double particles;                     /* net power */
     double wall[FIBRAD_WALLS_MAX];        /* net powers, [walls] */
     double conductance[FIBRAD_WALLS_MAX]; /* power/K, [walls], of all contacts of a wall */
+    double parts;                         /* number of parts of the step of heat */
 } fibrad_insitu_conducted;
 
 /* Net power that particles gain through contacts at their present positions and temperatures, beside radiation.
  * Contacts are found anew in each call. Particles beyond walls or openings have no contacts, and openings have none. A
  * wall conducts whatever its emissivity. Steps of time are explicit: for particles, and for walls that store heat, 2
  * times the conductance times the step must be less than the heat capacity. Otherwise differences of temperatures may
- * change their sign in a step.
+ * change their sign in a step. With `capacity` a step in which twice this ratio is above 1 has up to 100 equal parts.
+ * Contacts and temperatures of walls stay the same in all of them, and powers are means over the parts.
  *   Input    bed, state: the same particles in the same order. Emissivities must be valid.
  *   Output   power[n]: above 0 where heat is gained, the same bits for every number of ranks
- *            conductance[n]: power/K, of all contacts of a particle
+ *            conductance[n]: power/K, of all contacts of a particle, divided by the number of parts
  *            conducted: may be NULL
  *   Errors   _ARGUMENT: as for fibrad_insitu_rows and fibrad_insitu_powers; a conductivity is not above 0
  *            _STATE: there are no rows

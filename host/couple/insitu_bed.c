@@ -55,7 +55,7 @@ static int check_bed(fibrad_insitu_build *b) {
     for (uint32_t k = 0; k < bed->openings; ++k) {
         fibrad_plane *opening = &b->opening[k];
         *opening = bed->opening[k];
-        if (isnan(opening->at))
+        if (!isfinite(opening->at))
             opening->at = opening->upper ? FIBRAD_LENGTH_MAX : -FIBRAD_LENGTH_MAX; /* until the bed is known */
     }
     for (uint32_t k = 0; k < bed->walls; ++k)
@@ -201,7 +201,10 @@ int fibrad_insitu_measure(fibrad_insitu_build *b) {
     if (!sum[0]) take_box_ends(b);
     for (uint32_t k = 0; k < b->bed->openings; ++k) {
         fibrad_plane *opening = &b->opening[k];
-        if (isnan(b->bed->opening[k].at)) opening->at = b->ends[opening->upper][opening->axis];
+        const double given = b->bed->opening[k].at, low = b->bed->low[opening->axis],
+                     high = b->bed->high[opening->axis];
+        if (!isfinite(given)) opening->at = b->ends[opening->upper][opening->axis];
+        if (isinf(given)) opening->at = opening->upper ? fmax(high, opening->at) : fmin(low, opening->at);
     }
     if (sum[0]) b->radius_mean = (double)sum[1] / (double)sum[0] / 0x1p32 * b->radius_max;
     choose_cutoff(b, most + 2, (double)sum[0]);

@@ -206,6 +206,33 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     return FIBRAD_OK;
 }
 
+/* Adds the squared errors that the noise of one row gives the powers of its particle and of those in it. The row's
+ * error is the root of the sum of the squared errors of all factors f. Paths end by chance: a factor of the part g of
+ * all ends gets the square g (1 - g), and two factors correlate by -g h, since rows add up to 1. A path leaves at a
+ * particle what this absorbs, and the rest of what it carries at its end. So particles count by the emissivity. */
+static void add_squares(const fibrad_insitu_set *set, const fibrad_row *row, double *square) {
+    const fibrad_particle *p = (const fibrad_particle *)set->particle.at + row->sphere;
+    const double *emission = set->emission.at, *made = set->made.at, own = emission[row->sphere];
+    double ends = row->escaped, rest = row->escaped * row->escaped, mean = 0, squares = 0;
+    for (uint32_t k = 0; k < row->length; ++k) ends += p->node * row->f[k], rest += pow(p->node * row->f[k], 2);
+    for (uint32_t k = 0; k < set->walls; ++k) ends += row->wall[k], rest += row->wall[k] * row->wall[k];
+    if (!(rest < ends * ends)) return;
+    const double error = fibrad_row_weight(row, fibrad_particle_weight(p)) * row->error;
+    const double noise = error * error / (1 - rest / (ends * ends));
+    for (uint32_t k = 0; k < row->length; ++k) {
+        const double g = p->node * row->f[k] / ends, half = made[row->col[k]] == made[row->sphere] ? 0.5 : 1;
+        const double gain = half * (emission[row->col[k]] - own);
+        mean += g * gain, squares += g * gain * gain;
+        square[row->col[k]] += noise * g * (1 - g) * gain * gain;
+    }
+    for (uint32_t k = 0; k <= set->walls; ++k) {
+        const double g = (k < set->walls ? row->wall[k] : row->escaped) / ends;
+        const double gain = (k < set->walls ? set->wall_emission[k] : set->surroundings_emission) - own;
+        mean += g * gain, squares += g * gain * gain;
+    }
+    square[row->sphere] += noise * fmax(0, squares - mean * mean);
+}
+
 int fibrad_insitu_errors(fibrad_insitu *s, double (*error)[2]) {
     if (!s) return FIBRAD_E_ARGUMENT;
     fibrad_insitu_set *set = &s->set;
@@ -216,15 +243,21 @@ int fibrad_insitu_errors(fibrad_insitu *s, double (*error)[2]) {
     if (!s->ready || !set->flows)
         status = fibrad_refuse(s->message, FIBRAD_E_STATE, "there are no powers yet, of which this would tell");
     if (!status && n && !error) status = FIBRAD_E_ARGUMENT;
-    if (!status) status = fibrad_block_fit(&s->value, 2 * (n + set->own), sizeof(double));
+    if (!status) status = fibrad_block_fit(&s->value, 2 * (n + set->own) + set->columns, sizeof(double));
     status = fibrad_agree(s->comm, status, s->message);
     if (status) return status;
     double(*value)[2] = s->value.at, (*home)[2] = value + n;
     const double *unknown = set->unknown.at;
+    double *square = home[set->own];
     memset(value, 0, n * sizeof *value);
+    memset(square, 0, set->columns * sizeof *square);
     for (int t = 0; t < s->config.threads; ++t)
         for (size_t at = 0; fibrad_rows_read(&set->rows[t], &at, &row);)
-            home[row.sphere][0] = unknown[row.sphere], home[row.sphere][1] = row.error;
+            home[row.sphere][0] = unknown[row.sphere], add_squares(set, &row, square);
+    fibrad_link_reverse(set->seen, square, 1);
+    const fibrad_particle *p = set->particle.at; /* a sphere that conducts gains e/n times as much as its node alone */
+    for (size_t i = 0; i < set->own; ++i)
+        home[i][1] = p[i].node > 0 ? p[i].emissivity / p[i].node * sqrt(square[i]) : 0;
     fibrad_link_reverse(set->present, value[0], 2);
     if (n) memcpy(error, value, n * sizeof *value);
     return FIBRAD_OK;

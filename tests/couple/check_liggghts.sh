@@ -192,12 +192,14 @@ with_mesh() { awk -v fixes="$1" '/^fix heat/ { print fixes } { print }' bed; }
 with_mesh 'fix vessel all mesh/surface file box.stl type 1 temperature 1200' >meshed
 only_planes=$radiation
 for side in zmax xmin xmax ymin ymax; do only_planes="$only_planes --wall $side:temperature=1200:emissivity=.9"; done
-# Without a lid: as with a black one as hot as the surroundings; refused without the word
+# Without a lid: as with a black one as hot as the surroundings, at the end of the box; refused without the word
 sides=$(echo "$only_planes" | sed 's/ --wall zmax:[^ ]*//')
 radiation="$sides --wall zmax:temperature=300:emissivity=1"
 run black_lid 1 'setforce 0 0 0' 200 -in bed
-radiation="$sides --wall zmax:open:at=.06"
-for ranks in 1 2; do run open$ranks $ranks 'setforce 0 0 0' 200 -in bed; done
+for ranks in 1 2; do
+    radiation="$sides --wall zmax:open$(test $ranks = 2 || echo :at=.06)"
+    run open$ranks $ranks 'setforce 0 0 0' 200 -in bed
+done
 echo "$(value black_lid radiation_particles) $(value open1 radiation_particles) $(value open2 radiation_particles) \
     $(value black_lid radiation_zmax) $(value open1 radiation_surroundings)" | awk '{
     printf "below a black lid %.5f J, an opening %.5f J; the lid gets %.5f J, the surroundings %.5f J\n", $1, $2, $4, $5

@@ -996,34 +996,49 @@ static double conductance_of_wall(const struct pile *p, const double *solid, siz
     return 4 * solid[i] * spot_radius(d, p->radius[i], 0, hertz);
 }
 
-/* Powers through contacts are those of all pairs of images, one by one. scale: of spots. */
-static void check_pairs(const struct pile *all, const double *solid, bool hertz, double scale, const double *power) {
-    for (size_t i = 0; i < all->bed.n; ++i) {
-        double gain = 0, sum = 0;
-        const int *most = all->bed.periodic;
-        for (size_t j = 0; j < all->bed.n; ++j)
-            for (int x = -most[0]; x <= most[0] && j != i; ++x)
-                for (int y = -most[1]; y <= most[1]; ++y)
-                    for (int z = -most[2]; z <= most[2]; ++z) {
-                        const double h = conductance_of_pair(all, solid, i, j, (const int[]){x, y, z}, hertz);
-                        sum += h, gain += h * (all->temperature[j] - all->temperature[i]);
-                    }
-        for (uint32_t k = 0; k < all->bed.walls; ++k) {
-            const double h = conductance_of_wall(all, solid, i, &all->wall[k], hertz);
-            sum += h, gain += h * (wall_temperature[k] - all->temperature[i]);
+/* Powers through contacts are those of all pairs of images, one by one, as means over equal parts of a step of heat.
+ * scale: of spots. Heat capacities are 1. */
+static void check_pairs(const struct pile *all, const double *solid, bool hertz, double scale, int parts,
+                        double seconds, const double *power) {
+    const size_t n = all->bed.n;
+    double *t = memory_of(n, 3 * sizeof *t), *mean = t + n, *gain = mean + n, largest = 0;
+    memcpy(t, all->temperature, n * sizeof *t);
+    for (int part = 0; part < parts; ++part) {
+        for (size_t i = 0; i < n; ++i) {
+            const int *most = all->bed.periodic;
+            double sum = 0;
+            gain[i] = 0;
+            for (size_t j = 0; j < n; ++j)
+                for (int x = -most[0]; x <= most[0] && j != i; ++x)
+                    for (int y = -most[1]; y <= most[1]; ++y)
+                        for (int z = -most[2]; z <= most[2]; ++z) {
+                            const double h =
+                                scale * conductance_of_pair(all, solid, i, j, (const int[]){x, y, z}, hertz);
+                            sum += h, gain[i] += h * (t[j] - t[i]);
+                        }
+            for (uint32_t k = 0; k < all->bed.walls; ++k) {
+                const double h = scale * conductance_of_wall(all, solid, i, &all->wall[k], hertz);
+                sum += h, gain[i] += h * (wall_temperature[k] - t[i]);
+            }
+            largest = fmax(largest, sum);
         }
-        CHECK(fabs(power[i] - scale * gain) <= 1e-9 * scale * sum * 1000);
+        for (size_t i = 0; i < n; ++i)
+            mean[i] = (part ? mean[i] : 0) + gain[i] / parts, t[i] += gain[i] * seconds / parts;
     }
+    for (size_t i = 0; i < n; ++i) CHECK(fabs(power[i] - mean[i]) <= 1e-9 * largest * 1000);
+    CHECK((parts > 1) == (4 * largest * seconds > 1) && 4 * largest * seconds <= parts);
+    free(t);
 }
 
 /* Contacts conduct the same, to the bit, whoever owns which particle. Their powers add up to zero. */
-static void contacts_conduct(const struct kind *kind, int axis, bool hertz, double gas) {
+static void contacts_conduct(const struct kind *kind, int axis, bool hertz, double gas, double seconds) {
     OWNED_PILE all = pile_of(kind);
     lay_along(&all, axis);
     for (size_t i = 0; i < all.bed.n; ++i) all.radius[i] *= 1.2;
-    double *solid = memory_of(all.bed.n, 2 * sizeof *solid), *kelvin = solid + all.bed.n;
-    for (size_t i = 0; i < all.bed.n; ++i) solid[i] = 1 + random_of(all.id[i], 6);
-    fibrad_insitu_contacts contacts = {.conductivity = solid, .hertz = hertz, .scale = .7, .gas = gas};
+    double *solid = memory_of(all.bed.n, 3 * sizeof *solid), *kelvin = solid + all.bed.n, *one = kelvin + all.bed.n;
+    for (size_t i = 0; i < all.bed.n; ++i) solid[i] = 1 + random_of(all.id[i], 6), one[i] = 1;
+    const fibrad_insitu_contacts contacts = {
+        .conductivity = solid, .hertz = hertz, .scale = .7, .gas = gas, .capacity = one, .seconds = seconds};
     fibrad_insitu_conducted whole = {0}, parts = {0};
     const fibrad_insitu_config quick = {.cutoff = 4, .directions = FIBRAD_DIRECTIONS_MIN, .paths = 1};
     all.bed.conductivity = NULL;
@@ -1034,7 +1049,7 @@ static void contacts_conduct(const struct kind *kind, int axis, bool hertz, doub
         make_rows(self, &all, 7);
         CHECK(fibrad_insitu_conduct(self, &contacts, &all.bed, &state, all.power, kelvin, &whole) == FIBRAD_OK);
         fibrad_insitu_free(self);
-        if (gas == 0) check_pairs(&all, solid, hertz, .7, all.power);
+        if (gas == 0) check_pairs(&all, solid, hertz, .7, (int)whole.parts, seconds, all.power);
     }
     OWNED_PILE part = part_of(&all, kind->spread);
     part.bed.conductivity = NULL;
@@ -1050,7 +1065,8 @@ static void contacts_conduct(const struct kind *kind, int axis, bool hertz, doub
     for (uint32_t k = 0; k < all.bed.walls; ++k) left += parts.wall[k];
     CHECK(largest > 0 && parts.contacts > 20 && fabs(sum - parts.particles) < 1e-12 * largest);
     CHECK(fabs(left) < 1e-12 * largest && (all.bed.walls == 0 || (parts.wall[0] != 0 && parts.conductance[0] > 0)));
-    CHECK(rank > 0 || (whole.contacts == parts.contacts && fabs(whole.particles - parts.particles) < 1e-12 * largest));
+    CHECK(rank > 0 || (whole.contacts == parts.contacts && whole.parts == parts.parts &&
+                       fabs(whole.particles - parts.particles) < 1e-12 * largest));
     free(power);
     free(solid);
 }
@@ -1331,9 +1347,11 @@ int main(int argc, char **argv) {
     conducting = 0;
     a_lone_particle();
     walls_exchange_with_each_other();
-    for (int k = 0; k < KINDS; ++k)
+    for (int k = 0; k < KINDS; ++k) {
         for (int axis = kinds[k].walls >= TUBE ? 0 : 2; axis < 3; ++axis)
-            contacts_conduct(&kinds[k], axis, k % 2, axis < 2 || k == 4 ? .3 : 0);
+            contacts_conduct(&kinds[k], axis, k % 2, axis < 2 || k == 4 ? .3 : 0, 0);
+        contacts_conduct(&kinds[k], 2, k % 2, 0, .3);
+    }
     refusals();
     wrong_units_are_refused();
     rows_are_too_inaccurate();

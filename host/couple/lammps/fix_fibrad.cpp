@@ -331,6 +331,11 @@ FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what
 int FixFibrad::setmask() { return FixConst::POST_FORCE | FixConst::END_OF_STEP | FixConst::POST_RUN; }
 
 void FixFibrad::init() {
+    const char *shape = atom->body_flag        ? "body"
+                        : atom->ellipsoid_flag ? "ellipsoid"
+                        : atom->tri_flag       ? "tri"
+                                               : nullptr;
+    if (shape) stop(std::string("particles must be spheres, and atom_style ") + shape + " has others");
     if (!atom->radius) stop("particles need radii (atom_style sphere)");
     if (!atom->tag_enable) stop("atoms need ids");
     if (domain->dimension != 3) stop("the dimension must be 3");
@@ -403,7 +408,7 @@ void FixFibrad::list_output() {
     list += text(", [%d] gone", 9 + 2 * walls);
     if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * walls, 11 + 2 * walls);
     say(text("fix fibrad: f_%s", id) + list);
-    if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error", id));
+    if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error of the power", id));
 }
 
 void FixFibrad::post_run() {
@@ -610,13 +615,14 @@ void FixFibrad::find_powers() {
     std::vector<double> power(member.size()), conductance(member.size()), capacity = values(cp);
     check_values(t);
     const Bed present = present_bed();
-    need_good(radiation_powers(&radiation, &present.bed, t.data(), number_of_rows(false), k.data(), power.data(),
-                               conductance.data()));
     capacity.resize(member.size(), HUGE_VAL);
     for (size_t m = 0; m < member.size(); m++)
         capacity[m] = atom->mask[member[m]] & groupbit ? capacity[m] * mass(member[m]) : HUGE_VAL;
-    need_good(radiation_stable(&radiation, &present.bed, t.data(), capacity.data(), conductance.data(),
-                               update->dt * heat_every, heat_every));
+    const double seconds = update->dt * heat_every;
+    need_good(radiation_powers(&radiation, &present.bed, t.data(), number_of_rows(false), k.data(), capacity.data(),
+                               seconds, power.data(), conductance.data()));
+    need_good(
+        radiation_stable(&radiation, &present.bed, t.data(), capacity.data(), conductance.data(), seconds, heat_every));
     powers_at = update->ntimestep;
     std::fill(q.begin(), q.end(), 0.0);
     for (size_t m = 0; m < member.size(); m++) q[member[m] * columns] = power[m];

@@ -131,7 +131,7 @@ class FixFibrad : public Fix {
     std::string temperature;        // name of the vector of temperatures
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none
-    bool errors;                    // whether atoms have errors of their rows
+    bool errors;                    // whether atoms have errors of their powers
     int columns;                    // values of each atom
     double moved;                   // rows are made anew if particles have moved by so many radii; 0: never
     double initial;                 // temperature of new atoms

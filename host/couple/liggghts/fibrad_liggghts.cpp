@@ -129,7 +129,8 @@ void check_box(Driver *driver) {
     const char *units = driver->lmp->update->unit_style;
     if (!radiation_units(&driver->radiation, units))
         stop(WRONG_INPUT, std::string("units are si or cgs, not ") + units);
-    const int types = driver->lmp->atom->ntypes;
+    const LAMMPS_NS::Atom *atom = driver->lmp->atom;
+    const int types = atom->ntypes;
     expand(&driver->options.emissivity, types, "emissivities");
     expand(&driver->options.solid, types, "conductivities of the solid");
     expand(&driver->options.contact, types, "conductivities at contacts");
@@ -138,7 +139,12 @@ void check_box(Driver *driver) {
         check(driver, radiation_begin(&driver->radiation, MPI_COMM_WORLD, domain->periodicity));
     check(driver,
           radiation_place(&driver->radiation, domain->boxlo, domain->boxhi, domain->periodicity, domain->boundary));
-    if (driver->lmp->atom->radius_flag == 0 || driver->lmp->atom->rmass_flag == 0)
+    const std::string shape = atom->superquadric_flag != 0 ? "superquadric"
+                              : atom->ellipsoid_flag != 0  ? "ellipsoid"
+                              : atom->tri_flag != 0        ? "tri"
+                                                           : "";
+    if (!shape.empty()) stop(WRONG_INPUT, "particles must be spheres, and atom_style " + shape + " has others");
+    if (atom->radius_flag == 0 || atom->rmass_flag == 0)
         stop(WRONG_INPUT, "the script's particles have no radius: atom_style granular");
 }
 
@@ -350,10 +356,10 @@ void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     if (!driver->radiates || number % driver->options.rows == 0)
         check(driver, radiation_rows(r, &bed, (uint64_t)number, false));
     share_temperatures(driver, false);
-    check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), driver->gain.data(),
-                                   driver->conductance.data()));
-    check(driver, radiation_stable(r, &bed, t, driver->heat_capacity.data(), driver->conductance.data(),
-                                   driver->lmp->update->dt * (double)every, every));
+    const double seconds = driver->lmp->update->dt * (double)every, *capacity = driver->heat_capacity.data();
+    check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), capacity, seconds,
+                                   driver->gain.data(), driver->conductance.data()));
+    check(driver, radiation_stable(r, &bed, t, capacity, driver->conductance.data(), seconds, every));
     double *source = driver->source->vector_atom, *power = driver->power->vector_atom;
     for (int i = 0; i < n; ++i) {
         const double gain = driver->gain[(size_t)i];

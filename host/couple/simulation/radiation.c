@@ -199,6 +199,10 @@ bool radiation_place(struct radiation *r, const double low[3], const double high
             return refuse(r, "wall %s: the box has no fixed end there; say where, at=POS", w->word);
         r->wall[k].plane.at = (upper ? high : low)[axis];
     }
+    for (uint32_t k = 0; k < r->openings; ++k) {
+        fibrad_plane *opening = &r->opening[k];
+        if (isnan(opening->at) && boundary[opening->axis][opening->upper] == 1) opening->at = INFINITY;
+    }
     return true;
 }
 
@@ -244,7 +248,7 @@ bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t 
 }
 
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,
-                      const double *solid, double *power, double *conductance) {
+                      const double *solid, const double *capacity, double seconds, double *power, double *conductance) {
     const fibrad_insitu_state state = {.sigma = r->sigma,
                                        .surroundings = r->surroundings,
                                        .wall_temperature = r->temperature,
@@ -261,10 +265,17 @@ bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const d
     if (!take(r, status, step) || !r->conducts) return !status;
     double *through = malloc((bed->n + 1) * sizeof *through);
     status = fibrad_agree(r->comm, through ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
-    r->spots.conductivity = solid;
+    r->spots.conductivity = solid, r->spots.capacity = capacity, r->spots.seconds = seconds;
     if (!status) status = fibrad_insitu_conduct(r->insitu, &r->spots, bed, &state, through, conductance, &r->conducted);
     for (size_t i = 0; i < bed->n && !status; ++i) power[i] += through[i];
     free(through);
+    if (!status && r->conducted.parts > 1 && !r->told_parts) {
+        char sentence[WALL_FAULT];
+        snprintf(sentence, sizeof sentence, "step %" PRIu64 ": contacts conduct in %g parts of a step of heat", step,
+                 r->conducted.parts);
+        r->say(r->simulation, sentence, false);
+        r->told_parts = true;
+    }
     return take(r, status, step);
 }
 

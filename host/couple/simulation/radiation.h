@@ -51,7 +51,7 @@ struct radiation {
     fibrad_insitu_totals totals;       /* of the last powers, by radiation */
     fibrad_insitu_conducted conducted; /* of the same, through contacts */
     int rows_made, rows_followed, powers_found;
-    bool told[FIBRAD_REMARKS];
+    bool told[FIBRAD_REMARKS], told_parts;
     char fault[2 * WALL_FAULT];
 
     /* Set by the simulation: puts meshes where they are, before rows are made; prints a sentence on rank 0. */
@@ -83,7 +83,7 @@ bool radiation_add_wall(struct radiation *r, const struct wall_words *words);
 /* Checks the options and makes the walls. Sides of `box` along periodic axes are left out. */
 bool radiation_begin(struct radiation *r, MPI_Comm comm, const int periodic[3]);
 
-/* Puts planes at the ends of a box. boundary: as LAMMPS has it, 1: the end is fixed. */
+/* Puts planes and openings at the ends of a box. boundary: as LAMMPS has it, 1: the end is fixed. */
 bool radiation_place(struct radiation *r, const double low[3], const double high[3], const int periodic[3],
                      const int boundary[3][2]);
 
@@ -95,10 +95,10 @@ fibrad_insitu_bed radiation_bed(const struct radiation *r, const double low[3], 
 bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t step, bool follow);
 
 /* Finds power[n], with what contacts bring, and the conductance[n] of contacts. If particles have come or gone, makes
- * their rows before. solid: [n], conductivity at contacts, if they conduct; state: its particles are those of the bed
- * and it has their temperatures; the rest is set. through: [n], what contacts bring; NULL: is not wanted. */
+ * their rows before. solid, capacity: [n], conductivity at contacts and heat capacities, if contacts conduct;
+ * seconds: of a step of heat. */
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,
-                      const double *solid, double *power, double *conductance);
+                      const double *solid, const double *capacity, double seconds, double *power, double *conductance);
 
 /* Checks that steps of `seconds` for heat are stable: (4 sigma T^3 A e + 2 H) seconds < C, H the conductance of the
  * contacts. So no particle and no wall overshoots its surroundings, and no difference of temperatures changes its sign.
