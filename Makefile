@@ -441,7 +441,7 @@ cppcheck:
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
 ## nightly: what .ci/run leaves out: other compilers and machines, static checks, all of the couplings, long fuzzing
-nightly: deps-nightly bits threads lint clang-warnings bench-quick programs couple
+nightly: deps-nightly bits threads lint clang-warnings bench-quick skips programs couple
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh

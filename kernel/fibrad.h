@@ -353,12 +353,12 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
 /* Finds spheres whose centres lie inside others, so that no scene has them, and how much smaller they must be.
  *   Input    spheres: two spheres of one id are images of one, and are no pair
  *            memory[size]: at least fibrad_scene_size(n, ids) bytes; a scene in this memory is lost
- *   Output   part[n]: 1, or the least d/max(r_i, r_j) of all spheres j at a distance d < max(r_i, r_j). With the radii
- *            r_i part[i] each centre lies on the surface of the other sphere or outside.
+ *   Output   part[n]: 1, or the least d/max(r_i, r_j) of all spheres j at a distance d < max(r_i, r_j), less 1e-9 of
+ *            it for rounding. With the radii r_i part[i] each centre lies outside of the other sphere.
  *            other[n]: this sphere j; n: there is none
  *            fault: where an error is; may be NULL
  *   Errors   _ARGUMENT, _SIZE
- *            _GEOMETRY: there are more than 64 n pairs; fault->first is a large sphere
+ *            _GEOMETRY: there are more than 64 n pairs; fault->first is a large sphere; part and other are not valid
  *   Cost     as fibrad_scene_init
  *   Source   docs/lammps.md */
 int fibrad_spheres_inside(const fibrad_spheres *spheres, void *memory, size_t size, double *part, uint32_t *other,
@@ -801,7 +801,8 @@ typedef struct fibrad_displacement_rule {
 typedef struct fibrad_displacement {
     double square[3]; /* L^2: mean square displacement along each axis */
     double error[3];  /* L^2: estimated standard error of `square` */
-    double absorbed;  /* fraction that spheres absorb; if spheres conduct, of the paths that did not leave the bed */
+    double absorbed;  /* estimated fraction that spheres absorb, with few paths up to some percent above 1; if spheres
+                         conduct, fraction of the paths that did not leave the bed */
     uint64_t rays;    /* rays traced */
 } fibrad_displacement;
 

@@ -90,7 +90,8 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
  *      the surface absorbs. Insulated walls have no given power: `absorbed` is enough for them.
  *
  * Light that falls on a part of a patch is reflected from where it falls: rays carry it to the patch where it arrives
- * next. From there on, patches reflect it. Patches that are lit wholly reflect without rays. */
+ * next. From there on, patches reflect it, or rays if many arrive there. Where rays are few, patches that are lit
+ * wholly reflect without rays. */
 
 /* Number of patches of a heat problem.
  *   Errors   0 if heat is NULL */
@@ -113,10 +114,13 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept, double *apart);
 
-/* A ray of light: the patch that it meets first, and the patch that it meets after it was reflected there. UINT32_MAX:
- * the ray brings no light. */
+/* Hits of a ray: where it comes from outside, and after up to five reflections. */
+#define FIBRAD_LIGHT_HITS 6
+
+/* A ray of light: the patches that it meets one after another, as far as it is followed. UINT32_MAX: no more. Light is
+ * followed beyond its first reflection if its cross-section is at most four discs of the largest sphere. */
 typedef struct fibrad_light_ray {
-    uint32_t first, second;
+    uint32_t patch[FIBRAD_LIGHT_HITS];
     uint32_t slot; /* where it would end if there were neither spheres nor triangles; a number inside the kernel */
 } fibrad_light_ray;
 
@@ -126,7 +130,7 @@ typedef struct fibrad_light_ray {
  *   Errors   0 if an argument is NULL */
 uint32_t fibrad_heat_light_rays(const fibrad_heat *heat, const double *hits);
 
-/* Number of tasks for fibrad_heat_scatter. */
+/* Number of tasks for fibrad_heat_scatter. They cover any number of rays. */
 uint32_t fibrad_heat_scatter_tasks(uint32_t rays);
 
 /* Follows the rays of one task. Several threads may do different tasks at the same time.
@@ -134,7 +138,7 @@ uint32_t fibrad_heat_scatter_tasks(uint32_t rays);
  *            task: 0 to fibrad_heat_scatter_tasks - 1
  *   Output   ray[rays]: those of the task are written
  *   Errors   as fibrad_heat_shine; _BACK: work->triangle is written
- *   Cost     2 microseconds for each ray */
+ *   Cost     2 microseconds for each ray, up to 6 in narrow light */
 int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t rays,
                         uint32_t task, fibrad_light_ray *ray);
 
@@ -144,7 +148,7 @@ int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad
  *            ends: the `ends` of fibrad_light_empty minus the sum of `kept` over all tasks, field by field
  *   Output   hits[fibrad_heat_patches]: the light is added to it
  *            ends: triangles have taken their part from other walls and from `through`
- *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY */
+ *   Errors   _ARGUMENT: also if a ray names a patch or a slot that there is not; _STATE, _WORK, _MEMORY */
 int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light_ray *ray, uint32_t rays,
                             fibrad_light_ends *ends, double *hits);
 
@@ -152,14 +156,14 @@ int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fi
 typedef struct fibrad_light_hits {
     const double *first; /* [patches], of fibrad_heat_shine and fibrad_heat_shine_walls */
     double *light;       /* [patches], out: what patches reflect; takes the place of fibrad_heat_sources.light */
-    double *spots;       /* [patches], out: the part of `first` that rays have reflected */
+    double *spots;       /* [patches], out: light that rays have brought and reflected */
     double *squares;     /* [spheres + walls + 2], out: sums of squared powers of rays that arrive on spheres, walls and
                             outside; last: of squared powers of beams that leave the patches where rays have arrived */
 } fibrad_light_hits;
 
 /* Carries light that falls on parts of patches to where it arrives next.
  *   Input    absorptivity[spheres], wall_absorptivity[walls]: of the light
- *   Errors   _ARGUMENT, _STATE, _WORK, _MEMORY */
+ *   Errors   as fibrad_heat_shine_walls */
 int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light,
                         const fibrad_light_ray *ray, uint32_t rays, const double *absorptivity,
                         const double *wall_absorptivity, const fibrad_light_hits *hits);

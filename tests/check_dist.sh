@@ -54,6 +54,12 @@ case $(gcc -dumpmachine) in
 x86_64*) variant gcc "-O2 -march=native" "" "" scalar sse2 avx2 avx512 ;;
 *) variant gcc -O2 "" "" scalar ;;
 esac
+# arithmetic that is not IEEE 754 is refused with a sentence
+for flag in -ffast-math -Ofast -ffinite-math-only; do
+    "$CC" $flag -fsyntax-only "$folder/fibrad.c" 2>&1 | grep -q 'error.*fibrad needs IEEE 754 arithmetic' ||
+        { echo "two files with $flag: no error says that this is wrong" && faults=1; }
+done
+
 # needs COMPILER NM FLAG...: the object takes square roots from the processor, not from the mathematical library
 needs() {
     compiler=$1 nm=$2

@@ -95,6 +95,9 @@ static const struct {
     {{"factors", MONO, "--wall", "zmin,top"},
      "--wall: 'top' is no wall; there are box, auto, xmin ... zmax, cylinder:X,Y,R, xcylinder:Y,Z,R, ycylinder:X,Z,R "
      "and mesh:FILE"},
+    {{"heat", MONO, "--wall", "zmin:at=0,temperature=1300"},
+     "--wall: temperature=1300 is not how a wall is written: zmin:at=VALUE:temperature=T:emissivity=E, "},
+    {{"conductivity", MONO, "--emissivity=.5", "--temperature=2000:300:100"}, "is not FROM:TO:STEP, which ascends"},
     {{"factors", MONO, "--wall", "zmin=3"}, "--wall: zmin=3 is not how a wall is written"},
     {{"factors", MONO, "--wall", "zmin:temperature=3"},
      "--wall: zmin: 'temperature' is of no use here; there are at, open"},

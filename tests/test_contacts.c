@@ -417,6 +417,54 @@ static fibrad_contact_list *found_in(const struct bed *bed, const fibrad_scene_c
     return list;
 }
 
+/* Mistakes in a bed of two spheres and two triangles. What no scene can have is refused before contacts are looked for,
+ * and spheres without a scene are checked as well. */
+LOOP_TEST(contacts_of_no_bed, 19) {
+    const int what = _i;
+    double at[2][3] = {{0, 0, 1}, {0, 0, 2.9}}, r[2] = {1, 1};
+    double v[4][3] = {{-3, -3, 0}, {9, -3, 0}, {9, 9, 0}, {-3, 9, 0}};
+    uint32_t corner[2][3] = {{0, 1, 2}, {0, 2, 3}}, front[2] = {0, 0};
+    struct fibrad_triangles t = {&v[0][0], &v[0][1], &v[0][2], 3, 4, &corner[0][0], front, NULL, 2, {0}};
+    fibrad_wall wall = {.kind = FIBRAD_WALL_MESH};
+    fibrad_scene_config config = {.wall = &wall, .walls = 1, .triangles = &t};
+    const fibrad_spheres s = {&at[0][0], &at[0][1], &at[0][2], r, 2, .stride = 3};
+    const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_HERTZ, .gas_reach = .65};
+    const double extremes[] = {1e-300, 1e-3, -5, NAN};
+    if (what == 1) corner[0][2] = 100000000;
+    if (what == 2) front[0] = 7;
+    if (what == 3) v[1][0] = NAN;
+    if (what == 4) t.corner = NULL;
+    if (what == 5) config.wall = NULL;
+    if (what == 6) t.vertices = 0;
+    if (what == 7) wall.kind = 9;
+    if (what == 8) config.walls = 5000, config.triangles = NULL;
+    if (what == 9) v[1][0] = 1e300, v[2][0] = 1e300;
+    if (what == 10) wall = (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane.axis = 5};
+    if (what == 11) wall = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {.along = 7, .radius = 5}};
+    const bool of_spheres = what >= 12; /* the others are not looked at without a scene */
+    if (what >= 12 && what < 14) r[1] = what == 12 ? -1 : 1e-300;
+    if (what == 14) r[0] = NAN;
+    if (what == 15) at[1][2] = NAN;
+    if (what == 16) at[1][2] = 1e300;
+    for (int k = 0; k < (what > 16 ? 2 : 1); k++) {
+        if (what > 16) config.period[what - 17] = extremes[2 * (what - 17) + k];
+        fibrad_bed *bed;
+        fibrad_contact_list *list;
+        const int status = fibrad_bed_new(&bed, &config, &s, NULL);
+        if (what == 0) {
+            const fibrad_contact_list *of_bed;
+            assert_ok(status);
+            assert_ok(fibrad_bed_contacts(bed, &rule, &of_bed));
+            ck_assert_uint_eq(of_bed->n, 2);
+            fibrad_bed_free(bed);
+            continue;
+        }
+        ck_assert_int_lt(status, 0);
+        ck_assert_ptr_null(bed);
+        if (of_spheres) ck_assert_int_lt(fibrad_contacts_find(&config, &s, &rule, &list), 0);
+    }
+}
+
 TEST(spots_of_a_pair_and_a_wall) {
     OWNED_BED bed = BED({0, 0, 0.98, 1}, {0, 0, 2.46, .5});
     const fibrad_wall floor = plane_at(2, 0, 0);

@@ -161,7 +161,7 @@ TEST(tables_end) {
 }
 
 /* What is wrong with a file of contacts is said with its line. */
-LOOP_TEST(files_at_fault, 8) {
+LOOP_TEST(files_at_fault, 10) {
     static const struct {
         const char *text, *reason;
         int line;
@@ -172,10 +172,13 @@ LOOP_TEST(files_at_fault, 8) {
                  {"i,j,W/K\n1,zmax,1\n", "'zmax' is neither a sphere nor a wall", 2},
                  {"i,j,W/K\n1,2\n", "2 columns instead of i,j,W/K", 2},
                  {"0,1,1\n", "the header is not i,j,W/K", 1},
+                 {"", "there is no header i,j,W/K", 0},
+                 {"% of a run\n\n", "there is no header i,j,W/K", 0},
                  {"i,j,W/K\n0,1.5,1\n", "'1.5' is neither a sphere nor a wall", 2}};
     const char *file = contacts(cases[_i].text);
     FAIL_WITH(3, "heat", ROW, "--emissivity", "0.8", "--contacts", file);
-    assert_has(said, formatted("%s:%d: %s", file, cases[_i].line, cases[_i].reason));
+    assert_has(said,
+               formatted("%s%s: %s", file, cases[_i].line ? formatted(":%d", cases[_i].line) : "", cases[_i].reason));
 }
 
 /* Options that need others, or cannot be combined. */
@@ -184,6 +187,8 @@ TEST(options_at_fault) {
     FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--contacts", "lens");
     assert_has(said, "--contacts lens or hertz needs --contact-conductivity or --solid-conductivity");
     FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--contacts", "lens", "--contacts", "hertz");
+    FAIL_WITH(4, "heat", ROW, "--emissivity", "0.8", "--contacts", "herz");
+    assert_has(said, "--contacts: 'herz' is neither lens nor hertz, nor a file that exists");
     FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--gas-conductivity", "0.1");
     FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--contact-flows", in_folder("flows.csv"));
     FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--gas-gap", "0.2");

@@ -243,6 +243,42 @@ TEST(names_and_ends_of_tables) {
     ck_assert_str_eq(said, "");
 }
 
+/* A coordinate or a radius out of range is told with its value and the range. */
+TEST(values_out_of_range_of_spheres) {
+    static const char *const rows[][2] = {
+        {"3,0,0,1e300", "3: sphere 1: r is 1e+300: the radius is not above 0, or not within 1e-150 to 1e150"},
+        {"3,0,0,1e-300", "3: sphere 1: r is 1e-300: the radius"},
+        {"3,-1e200,0,1",
+         "3: sphere 1: y is -1e+200: a coordinate is not a number, or beyond 3e13 smallest radii or 1e150"},
+        {"3,0,1e14,1", "3: sphere 1: z is 1e+14: a coordinate"}};
+    for (int k = 0; k < 4; ++k) {
+        const char *bed = write_file("n.csv", formatted("x,y,z,r\n0,0,0,.5\n%s\n", rows[k][0]));
+        FAIL_WITH(3, "factors", bed);
+        expect_message(formatted("%s:", bed), rows[k][1]);
+    }
+}
+
+/* A sink empties a sphere when its heat is used up. The message has the time of the last step. The error of a
+ * temperature in time is not known. */
+TEST(a_sink_in_time) {
+    const char *bed = write_file("sink.csv", "x,y,z,r,P\n0,0,0,.01,-50\n"), *out = in_folder("q.csv");
+#define SINK                                                                                                           \
+    "heat", bed, "--length-unit", "m", "--emissivity", ".8", "--temperature", "300", "--power", "P", "--ambient",      \
+        "300", "--heat-capacity", "800", "--density", "2500", "--until"
+    const double heat = 800 * 2500 * 4e-6 / 3 * M_PI * 300, gained = .8 * 5.67e-8 * 4e-4 * M_PI * pow(300, 4);
+    FAIL_WITH(3, SINK, "60");
+    const char *after = strstr(said, "after ");
+    ck_assert_msg(after && strstr(said, " s no step keeps all temperatures above 0 K"), "%s", said);
+    ck_assert_double_le(strtod(after + 6, NULL), heat / (50 - gained));
+    ck_assert_double_ge(strtod(after + 6, NULL), .98 * heat / 50);
+    SUCCEED(SINK, "45", "-o", out);
+    const char *text = read_file(out), *row = strchr(text, '\n') + 1;
+    double value[4] = {0};
+    char rest[80];
+    ck_assert_int_eq(sscanf(row, "%lf,0,%lf,%lf,%lf,%79s", &value[0], &value[1], &value[2], &value[3], rest), 5);
+    ck_assert_msg(value[3] > 0 && strncmp(rest, ",", 1) == 0, "%.*s", (int)strcspn(row, "\n"), row);
+}
+
 /* Tables of time may be in minutes, and in the unit of --temperature-unit alone. */
 TEST(units_and_ends_of_tables_of_time) {
     const char *bed = write_file("bed.csv", "x,y,z,r\n0,0,0,.01\n.03,0,0,.01\n"), *out = in_folder("q.csv");

@@ -313,6 +313,128 @@ TEST(a_black_sphere_sees_a_plate) {
     }
 }
 
+/* ---- small meshes: closed forms of black spheres that are seen whole ---- */
+
+/* A small square, tilted about z, that faces the sphere at the origin. */
+struct small_plate {
+    double distance, half, turn;
+};
+
+static void add_plate(struct problem *p, const struct small_plate *plate, uint32_t cells, uint32_t front,
+                      uint32_t back) {
+    const double c = cos(plate->turn), s = sin(plate->turn), h = plate->half;
+    add_sheet(p->mesh, (const double[]){plate->distance + s * h, -c * h, -h}, (const double[]){0, 0, 2 * h},
+              (const double[]){-2 * s * h, 2 * c * h, 0}, cells, front, back);
+}
+
+/* What the front of a plate sees of a sphere: the mean of cos r^2/d^2 over the plate. */
+static double seen_of(const struct small_plate *plate, const double centre[3], double r) {
+    const double c = cos(plate->turn), s = sin(plate->turn);
+    const int n = 60;
+    double sum = 0;
+    for (int k = 0; k < n * n; k++) {
+        const double a = ((k % n * 2 + 1.) / n - 1) * plate->half, b = ((k / n * 2 + 1.) / n - 1) * plate->half;
+        const double d[3] = {plate->distance - s * b - centre[0], c * b - centre[1], a - centre[2]};
+        const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        sum += (c * d[0] + s * d[1]) / sqrt(square) * r * r / square;
+    }
+    return sum / (n * n);
+}
+
+static const struct small_plate small_plates[] = {{5, .05, 0},      {5, .01, 0},      {20, .5, 0},     {1.5, .02, .3},
+                                                  {4.15, .223, .5}, {11.8, .31, -.6}, {2.6, .25, -.2}, {27, .06, .7}};
+#define PLATES (int)(sizeof small_plates / sizeof *small_plates)
+
+/* The power is right within two estimates, and the estimate is some percent at most. */
+static void assert_known(double found, double error, double right) {
+    ck_assert_double_le(fabs(found - right), 2 * error);
+    ck_assert_double_le(error, .06 * fabs(right));
+}
+
+LOOP_TEST(a_small_plate_gets_what_it_sees_of_a_sphere, PLATES) {
+    const struct small_plate *plate = &small_plates[_i];
+    const double area = 4 * plate->half * plate->half, right = seen_of(plate, (const double[3]){0}, 1) * area;
+    for (uint32_t cells = 1; cells <= 10; cells += 9) {
+        ENDED struct problem *p = problem_of(BED({0, 0, 0, 1}), 2, 1);
+        p->walls = 1;
+        add_plate(p, plate, cells, 0, FIBRAD_NO_WALL);
+        trace_and_solve(p);
+        assert_known(p->q[0], p->q_error[0], 16 * right);
+        assert_near(p->power[0], -16 * 4 * PI, 1e-6); /* beams that miss the plate make up for those that meet it */
+        ck_assert_double_le(imbalance(p), 1e-12);
+        p->temperature[0] = 0, p->wall_temperature[0] = 2;
+        solve(p);
+        assert_near(p->q[0], -16 * area, 1e-4);
+        ck_assert_double_le(fabs(p->power[0] - 16 * right), 2 * p->error[0]);
+    }
+}
+
+/* Grey plates with two sides: alone, and in a large black room where most rays of walls are those of the room. */
+LOOP_TEST(a_small_grey_plate_gets_what_it_sees, PLATES) {
+    const struct small_plate *plate = &small_plates[_i];
+    const double area = 4 * plate->half * plate->half, sees = seen_of(plate, (const double[3]){0}, 1);
+    for (int room = 0; room < 2; room++) {
+        ENDED struct problem *p = problem_of(BED({0, 0, 0, 1}), 2, 1);
+        if (room) make_planes(p, -30, 30);
+        const uint32_t w = p->walls++;
+        add_plate(p, plate, 1, w, w);
+        p->wall_emissivity[w] = .4, p->wall_temperature[w] = 1.5;
+        trace_and_solve(p);
+        const double right = .4 * area * (16 * sees - 2 * pow(1.5, 4));
+        ck_assert_double_le(fabs(p->q[w] - right), 2 * p->q_error[w] + 1e-9);
+        ck_assert_double_le(p->q_error[w], .06 * .4 * area * 16 * fmax(sees, .03));
+        ck_assert_double_le(imbalance(p), 1e-12);
+    }
+}
+
+LOOP_TEST(a_small_insulated_plate_is_as_hot_as_what_it_sees, PLATES) {
+    const struct small_plate *plate = &small_plates[_i];
+    ENDED struct problem *p = problem_of(BED({0, 0, 0, 1}), 2, 1);
+    double error[MOST];
+    p->walls = 1, p->insulated[0] = 1, p->result.wall_temperature_error = error;
+    add_plate(p, plate, 1, 0, FIBRAD_NO_WALL);
+    trace_and_solve(p);
+    const double right = 2 * pow(seen_of(plate, (const double[3]){0}, 1), .25);
+    ck_assert_double_le(fabs(p->found[0] - right), 2 * error[0]);
+    ck_assert_double_le(error[0], .02 * right);
+}
+
+/* Spheres of all sizes, none before another one. What a plate gets of each is seen when this sphere alone is hot. A
+ * hot plate gives each sphere the same. */
+TEST(small_plates_and_spheres_of_many_sizes) {
+    const double sphere[5][4] = {
+        {0, 0, 0, 1}, {0, 2.5, 0, .02}, {3, 0, 1.5, .2}, {-1, -3, .5, 1.6}, {4, -.6, -.5, .001}};
+    const struct small_plate plate = {5, .03, 0};
+    const double area = 4 * plate.half * plate.half;
+    ENDED struct problem *p = problem_of(bed_of(5, sphere), 0, 1);
+    p->walls = 1;
+    add_plate(p, &plate, 1, 0, FIBRAD_NO_WALL);
+    assert_ok(trace(p));
+    for (int i = 0; i < 5; i++) {
+        for (int k = 0; k < 5; k++) p->temperature[k] = k == i ? 2 : 0;
+        solve(p);
+        const double right = 16 * area * seen_of(&plate, sphere[i], sphere[i][3]);
+        ck_assert_double_le(fabs(p->q[0] - right), 2 * p->q_error[0] + 1e-9);
+        if (right > 1e-3 * 16 * area) ck_assert_double_le(fabs(p->q[0] - right), .05 * right);
+    }
+}
+
+/* The rays of a small mesh count in the same order, whatever thread followed them. */
+TEST(threads_change_no_bit_of_small_meshes) {
+    ENDED struct problem *p = thirty(), *other = thirty();
+    struct problem *both[2] = {p, other};
+    for (int k = 0; k < 2; k++) {
+        both[k]->walls = 1, both[k]->backwards = k == 1, both[k]->wall_temperature[0] = 3;
+        add_plate(both[k], &(struct small_plate){1.3, .02, 0}, 2, 0, 0);
+        trace_and_solve(both[k]);
+    }
+    ck_assert(p->q[0] == other->q[0] && p->q_error[0] == other->q_error[0]);
+    ck_assert_mem_eq(p->power, other->power, 30 * sizeof *p->power);
+    ck_assert_double_le(imbalance(p), 1e-12);
+}
+
+/* ---- more of other walls ---- */
+
 /* A sheet of two sides, which sticks out of a box of planes, divides the box into two halves. Each half has the powers
  * that it has alone. The planes are black, as their patches do not end at the sheet. */
 TEST(a_shelf_between_planes) {

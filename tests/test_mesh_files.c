@@ -48,7 +48,14 @@ static const struct {
     const char *text, *line, *reason;
 } broken[] = {{"", "", "is empty"},
               {"solid s\nendsolid s\n", "", "no triangles"},
-              {"nothing of the kind\n", "", "no STL file"},
+              {"nothing of the kind\n", "", "this is no STL file and no OBJ file"},
+              {"x,y,z,r\n0,0,0,1\n0,0,2,1\n0,0,4,1\n0,0,6,1\n0,0,8,1\n0,0,10,1\n0,0,12,1\n0,0,14,1\n0,0,16,1\n", "",
+               "this is no STL file and no OBJ file"},
+              {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", ":4", "there is no vertex 4"},
+              {"# o\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 -4 2\n", ":5", "there is no vertex -4"},
+              {"v 0 0 0\nv 1 0 0\nf 1 2\n", ":3", "a face has three corners or more"},
+              {"v 0 0\n", ":1", "three coordinates, not 2"},
+              {"o s\nv 0 0 0\n", "", "no triangles"},
               {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 nan\n"), ":6", "the coordinate is not finite: 'nan'"},
               {FACET("vertex 0 0 0\nvertex inf 0 0\nvertex 0 1 0\n"), ":5", "the coordinate is not finite: 'inf'"},
               {FACET("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1e200 0\n"), ":6", "too large"},
@@ -72,8 +79,9 @@ LOOP_TEST(broken_text_is_refused, sizeof broken / sizeof *broken) {
 
 TEST(broken_binaries_are_refused) {
     struct soup soup = cube();
-    refuse(write_binary("x.stl", &soup, "", 1), "", "685 bytes; a binary STL file of 12 triangles has 684");
-    refuse(write_binary("x.stl", &soup, "solid", -50), "", "634 bytes");
+    refuse(write_binary("x.stl", &soup, "", 1), "",
+           "this is no STL file: a binary one of 12 triangles has 684 bytes, not 685");
+    refuse(write_binary("x.stl", &soup, "solid", -50), "", "684 bytes, not 634");
     refuse(write_binary("x.stl", &soup, "", -620), "", "no STL file");
     soup.corner[7][1][2] = NAN;
     refuse(write_binary("x.stl", &soup, "", 0), "", "triangle 7: a coordinate is not finite");
@@ -81,6 +89,23 @@ TEST(broken_binaries_are_refused) {
     refuse(write_binary("x.stl", &soup, "", 0), "", "no triangles");
     FAIL_WITH(4, "factors", MONO, "--wall", "mesh:nothing.stl");
     expect_message("nothing.stl: ", "No such file");
+}
+
+/* Comments may stand before the first solid. Faces of OBJ files are polygons. */
+TEST(texts_of_other_kinds_are_read) {
+    OWNED_BY(stl_free) struct stl stl;
+    write_file("x.stl", "# floor\n\n# of a mill\n" FACET("vertex 0 0 0\nvertex 1 0 0\n# a corner\nvertex 0 1 0\n"));
+    ck_assert_int_eq(stl_read(&stl, in_folder("x.stl")), 0);
+    ck_assert(stl.text && stl.n == 1 && stl.place[0] == 5 && stl.corner[0][2][1] == 1);
+    stl_free(&stl);
+    write_file("x.obj",
+               "# of a modeller\nmtllib a.mtl\no plate\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .5 .5 .5\nv 0 1 0\nvn 0 0 1\n"
+               "s off\nf 1//1 2//1 3//1 4//1\ng\no the lid\nv 0 0 1\nf -1 -2/7 1 # last\n");
+    ck_assert_int_eq(stl_read(&stl, in_folder("x.obj")), 0);
+    ck_assert(stl.n == 3 && stl.solids == 1 && stl.place[2] == 14);
+    const double lid[3][3] = {{0, 0, 1}, {0, 1, 0}, {0, 0, 0}}, second[3][3] = {{0, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    ck_assert_mem_eq(stl.corner[2], lid, sizeof lid);
+    ck_assert_mem_eq(stl.corner[1], second, sizeof second);
 }
 
 /* ---- surfaces --------------------------------------------------------------------------------------------------- */

@@ -649,6 +649,55 @@ TEST(data_files_of_lammps_are_read) {
     }
 }
 
+/* The columns of the first rows say which style a file without one has. */
+TEST(data_files_need_no_style) {
+#define NO_STYLE(atoms) "LIGGGHTS data file\n\n" atoms " atoms\n0 1 xlo xhi\n0 1 ylo yhi\n0 1 zlo zhi\n\nAtoms\n\n"
+    static const struct {
+        const char *text, *columns;
+    } cases[] = {
+        {NO_STYLE("2") "1 1 0.2 1000 0.3 0.4 0.5\n2 1 0.2 1000 0.6 0.3 0.3 # last\n\nVelocities\n\n1 0 0 0 0 0 0\n",
+         "id type diameter density x y z"},
+        {NO_STYLE("2") "1 1 0.2 1000 0.3 0.4 0.5 0 0 -1\n2 1 0.2 1000 0.6 0.3 0.3 0 1 0\n",
+         "id type diameter density x y z"},
+        {NO_STYLE("2") "1 1 0.3 0.4 0.5 0.2 1000\n2 1 0.6 0.3 0.3 0.2 1000\n", "id type x y z diameter density"},
+        {"c\n2 atoms\nAtoms\n1 1 0.2 1000 0.3 0.4 0.5\n2 1 0.2 1000 0.6 0.3 0.3\n", "id type diameter density x y z"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+        ck_assert_msg(try(cases[k].text) == 0, "%zu: %s", k, said);
+        assert_has(said,
+                   formatted("the style of the atoms is not said; their columns are taken as %s", cases[k].columns));
+        ck_assert(bed.n == 2 && bed.x[0] == .3 && bed.y[0] == .4 && bed.z[0] == .5 && bed.r[1] == .1 && bed.x[1] == .6);
+    }
+    static const struct {
+        unsigned line;
+        const char *text;
+    } unknown[] = {
+        {11, NO_STYLE("2") "1 1 0.2 1000 0.3 0.3 0.3\n2 1 0.2 -1 0.6 0.3 0.3\n"}, /* no density */
+        {10, NO_STYLE("1") "1 1 7 0 0.3 0.3 0.3\n"},                              /* full: molecule, type, charge */
+        {10, NO_STYLE("1") "1 1 0.2 1000 0.3 0.3 1.3\n"},                         /* beyond the box */
+        {10, NO_STYLE("1") "1 1 0.5 0.3 0.3 0.3\n"},
+    };
+    for (size_t k = 0; k < sizeof unknown / sizeof *unknown; ++k)
+        expect_refusal(unknown[k].text, strlen(unknown[k].text), &(struct read_options){0}, unknown[k].line,
+                       "the style of the atoms is not said, and these columns do not tell it");
+}
+
+TEST(comments_may_begin_as_in_matlab) {
+    ck_assert_msg(try("% x y z r\n0 0 0 1\n%2 0 0 1\n2.5 0 0 1\n") == 0, "%s", said);
+    ck_assert(bed.n == 2 && bed.x[1] == 2.5);
+    ck_assert_msg(try("% made by hand\nx,y,z,r\n0,0,0,1\n") == 0, "%s", said);
+    for (int k = 0; k < 2; ++k) {
+        const char *mark = k ? "% " : "%", *frame = formatted("%sITEM: TIMESTEP\n7\n%sITEM: NUMBER OF ATOMS\n1\n"
+                                                              "%sITEM: BOX BOUNDS pp ff ff\n0 4\n0 4\n0 4\n"
+                                                              "%sITEM: ATOMS x y z radius\n1 2 3 1\n",
+                                                              mark, mark, mark, mark);
+        ck_assert_msg(try(formatted("%s%s", frame, frame)) == 0, "%s", said);
+        ck_assert(bed.n == 1 && bed.timestep == 7 && bed.period[0] == 4 && bed.frame == 1);
+    }
+    expect_refusal("%ITEM: TIMESTEP\n0\n%ITEM: NUMBER OF ATOMS\n2\n%ITEM: ATOMS x y z r\n0 0 0 1\n%ITEM: TIMESTEP\n",
+                   92, &(struct read_options){0}, 7, "the frame ends after 1 atoms");
+}
+
 TEST(xyz_files_are_read) {
     ck_assert_int_eq(
         try("2\nLattice=\"4 0 0 0 5 0 0 0 6\" Origin=\"-1 0 1\" Properties=species:S:1:id:I:1:pos:R:3:velo:R:3:"
@@ -726,8 +775,7 @@ TEST(vtk_pieces_are_joined) {
         expect_sphere(2, 1, 2, 3, 1, 0);
     }
     const char *itself = formatted("<VTKFile type='PPolyData'><Piece Source='%s'/></VTKFile>", strrchr(path, '/') + 1);
-    expect_refusal(itself, strlen(itself), &(struct read_options){0}, 1,
-                   "a piece of a VTK file has no points, but pieces");
+    expect_refusal(itself, strlen(itself), &(struct read_options){0}, 1, "pieces of pieces have no points, but pieces");
     const char ghosts[] = VTP(ARRAY("radius", "1 .5") "<DataArray type='UInt8' Name='vtkGhostType' format='ascii'>1 "
                                                       "0</DataArray>");
     ck_assert_int_eq(try(ghosts), 0);
@@ -744,6 +792,47 @@ TEST(vtk_pieces_are_joined) {
                                 "<DataArray type='Float64' NumberOfComponents='3' format='ascii'>7 8 9" END_OF_PIECE
                                 "</VTKFile>";
     expect_refusal(mixed, sizeof mixed - 1, &(struct read_options){0}, 0, "some pieces have an array of ids");
+}
+
+/* Blocks of a .vtm file are pieces. Files of a .pvd file are frames, and those of one time are pieces. */
+TEST(vtk_collections_are_read) {
+    char piece[4][220];
+    const char *name = strrchr(path, '/') + 1;
+    for (int p = 0; p < 4; ++p) {
+        snprintf(piece[p], sizeof piece[p], "%s_%d.vtp", path, p);
+        OWNED_FILE *file = opened(piece[p], "w");
+        if (p == 3)
+            fprintf(file, "<VTKFile type='PPolyData'><Piece Source='%s_1.vtp'/></VTKFile>", name);
+        else
+            fprintf(file,
+                    "<VTKFile type='PolyData'><PolyData>" PIECE("1", "%d", "%d") "%d 0 0" END_OF_PIECE
+                                                                                 "</PolyData></VTKFile>",
+                    p + 1, p, 9 * p);
+    }
+    const char *blocks =
+        formatted("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet><Block index='0'><DataSet index='0' "
+                  "file='%s_0.vtp'/><DataSet index='1'/></Block><DataSet index='1' name='b' file='%s_3.vtp'></DataSet>"
+                  "</vtkMultiBlockDataSet></VTKFile>",
+                  name, name);
+    ck_assert_msg(try(blocks) == 0, "%s", said);
+    ck_assert(bed.n == 2 && bed.r[0] == 1 && bed.r[1] == 2 && bed.x[1] == 9);
+    const char *series =
+        formatted("<VTKFile type=\"Collection\">\n<Collection>\n<DataSet timestep='0' part='0' file='%s_0.vtp'/>\n"
+                  "<DataSet timestep='0' part='1' file='%s_3.vtp'/>\n<DataSet timestep='.5' file='%s_2.vtp'/>\n"
+                  "</Collection>\n</VTKFile>\n",
+                  name, name, name);
+    ck_assert_msg(try(series) == 0, "%s", said);
+    ck_assert(bed.n == 1 && bed.r[0] == 3 && bed.frame == 1);
+    const struct read_options first = {.frames = {0, 1, 1}}, third = {.frames = {2, 3, 1}};
+    ck_assert_msg(try_options(series, strlen(series), &first) == 0, "%s", said);
+    ck_assert(bed.n == 2 && bed.r[1] == 2 && bed.frame == 0);
+    expect_refusal(series, strlen(series), &third, 0, "there is no frame 2; the last is 1");
+    const char empty[] = "<VTKFile type='Collection'>\n<Collection/>\n</VTKFile>\n";
+    expect_refusal(empty, sizeof empty - 1, &(struct read_options){0}, 0, "there is no frame in the file");
+    const char joined[] = "<VTKFile type='Collection'><Collection><DataSet file='a.vtp'/><DataSet file='b.vtp'/>";
+    expect_refusal(joined, sizeof joined - 1, &(struct read_options){0}, 1,
+                   "each DataSet must stand on a line of its own");
+    for (int p = 0; p < 4; ++p) unlink(piece[p]);
 }
 
 /* One array may be wanted twice, and a name in the same case goes before another one. */
@@ -864,7 +953,6 @@ static const struct {
     {3, "c\n1 atoms\nAtoms\n1 1 0 0 0\n", "style atomic: it has no radii"},
     {3, "c\n1 atoms\nAtoms # hybrid\n1 1 0 0 0 1 1\n", "style hybrid without its parts"},
     {3, "c\n1 atoms\nAtoms # body\n1 1 0 0 0 1 1\n", "style body, whose columns are not known"},
-    {4, "c\n1 atoms\nAtoms\n1 1 1 1 0 0 0\n", "the style of the atoms is not said"},
     {3, "c\n1 atoms\n0.1 0 0 xy xz yz\nAtoms # sphere\n1 1 1 1 0 0 0\n", "the box is tilted"},
     {6, "c\n1 atoms\n1 0 0 avec\n0 1 .1 bvec\n0 0 1 cvec\n0 0 0 abc origin\nAtoms # sphere\n1 1 1 1 0 0 0\n",
      "triclinic"},
@@ -899,7 +987,6 @@ static const struct {
      "an array is damaged"},
     {4, VTP("<DataArray type='Float32' Name='radius' format='appended' offset='0'/>"), "the array has no data"},
     {4, VTP("<DataArray type='String' Name='radius' format='ascii'>a b</DataArray>"), "arrays of type String"},
-    {1, "<VTKFile type='Collection'>\n", "this is a ParaView collection"},
     {0, "<VTKFile type='ImageData'>\n", "a VTK file of type ImageData: it has no spheres"},
     {0, "<VTKFile type='PImageData'>\n", "a VTK file of type PImageData: it has no spheres"},
     {2, "<VTKFile type='PPolyData'>\n<Piece/>", "a piece has no Source"},
@@ -971,6 +1058,7 @@ LOOP_TEST(faults_are_refused_with_line_and_reason, sizeof refused / sizeof *refu
 TEST(binary_data_are_refused) {
     const char zeros[] = "x,y,z,r\n0,0,0,\0001\n";
     expect_refusal(zeros, sizeof zeros - 1, &(struct read_options){0}, 2, "binary data");
+    expect_refusal("\x80 \xa4\x01\xb7 x y z\n1 2 3\n", 17, &(struct read_options){0}, 1, "binary data; a text file");
     expect_refusal("\x1f\x8b\x08 gzip", 8, &(struct read_options){0}, 0, "the gzip file is damaged");
     OWNED char *endless = malloc(3 << 20);
     ck_assert_ptr_nonnull(endless);

@@ -64,7 +64,13 @@ TEST(spheres_inside_others_are_found) {
     for (uint32_t i = 0; i < bed.n; i++) bed.r[i] = i == 9 ? 1e9 : 1e3;
     ck_assert_int_eq(fibrad_spheres_inside(&spheres, block, size, part, other, &fault), FIBRAD_E_GEOMETRY);
     ck_assert(fault.first < bed.n && fault.second == fault.first);
+    part[3] = 7, other[3] = 8; /* other errors leave the outputs as before */
     ck_assert_int_eq(fibrad_spheres_inside(&spheres, block, size - 1, part, other, &fault), FIBRAD_E_SIZE);
+    for (int k = 0; k < 3; k++) {
+        bed.r[9] = k ? 1 : NAN, bed.x[9] = k == 1 ? NAN : 1e300;
+        assert_invalid(fibrad_spheres_inside(&spheres, block, size, part, other, &fault));
+        ck_assert(part[3] == 7 && other[3] == 8);
+    }
 }
 
 /* Places are x[n][3] and radii are every fifth number. They give what arrays of their own give. */

@@ -109,6 +109,8 @@ static const struct {
              {"cylinder:1,b,3", "cylinder: needs X,Y,R"},
              {"box:open=zmax", "box: 'open' is of no use here"},
              {"zmin=0.1", "zmin=0.1 is not how a wall is written: zmin:at=VALUE:temp"},
+             {"temperature=1300", "temperature=1300 is not how a wall is written: zmin:at=VALUE"},
+             {"zmin,open", "open is not how a wall is written: zmin:at=VALUE"},
              {"tub=mesh:a.stl", "tub=mesh is not how"},
              {"cylinder=600,.9,0,0,1", "cylinder=600,.9,0,0,1 is not how"}};
 

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: MIT */
 #include "bed/bed_scene.h"
 
+#include <math.h>
+
 #include "cli/interrupt.h"
 #include "cli/message.h"
 
@@ -59,6 +61,14 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
     if (!known)
         return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
+    const bool place = fault->why == FIBRAD_WHY_PLACE;
+    const double value[] = {bed->x[first], bed->y[first], bed->z[first], bed->r[first]};
+    int worst = place ? 0 : 3;
+    for (int axis = 1; axis < 3 && place; ++axis)
+        if (fabs(value[axis]) > fabs(value[worst])) worst = axis;
+    if (place || fault->why == FIBRAD_WHY_RADIUS)
+        return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %c is %g: %s",
+                          (long long)bed_name(bed, first), "xyzr"[worst], value[worst], fibrad_why_text(fault->why));
     return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %s", (long long)bed_name(bed, first),
                       fibrad_status_text(status));
 }

@@ -237,10 +237,10 @@ static char cut_item(char **text) {
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]) {
     char *item = *text, *number[3];
     char stop = cut_item(text);
-    if (strchr(item, '=')) { /* as walls had them before 0.3.0 */
+    if (strchr(item, '=') || (find_key(item) && !wall_words_shape(item))) { /* as before 0.3.0, or behind a comma */
         snprintf(fault, WALL_FAULT,
                  "%.60s is not how a wall is written: zmin:at=VALUE:temperature=T:emissivity=E, zmax:open, "
-                 "cylinder:X,Y,R and mesh:FILE:name=NAME are",
+                 "cylinder:X,Y,R and mesh:FILE:name=NAME are, with colons between the words of a wall",
                  item);
         return false;
     }

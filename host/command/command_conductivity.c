@@ -128,7 +128,8 @@ static int take_temperatures(struct conductivity_request *request) {
         status = options_numbers("--temperature", from, 3, range, &count);
         const double steps = floor((range[1] - range[0]) / range[2] * (1 + 1e-12));
         if (!status && (count != 3 || !(range[2] > 0 && steps >= 0 && steps < TEMPERATURES_MAX)))
-            return message(STATUS_USAGE, "--temperature: '%.40s' is not FROM:TO:STEP with at most %d temperatures",
+            return message(STATUS_USAGE,
+                           "--temperature: '%.40s' is not FROM:TO:STEP, which ascends, with at most %d temperatures",
                            request->at, TEMPERATURES_MAX);
         if (!status) request->temperatures = 1 + (int)steps;
         for (int k = 0; k < request->temperatures && !status; ++k) t[k] = range[0] + k * range[2];

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bed/bed_scene.h"
 #include "cli/message.h"
@@ -21,6 +22,8 @@ int contacts_option(const char *text, void *contact_options) {
         options->spots = spots;
         return STATUS_OK;
     }
+    if (!strchr(text, '*') && strcmp(text, "-") != 0 && access(text, F_OK) != 0)
+        return message(STATUS_FILE, "--contacts: '%.200s' is neither lens nor hertz, nor a file that exists", text);
     if (options->files == CONTACT_FILES_MAX)
         return message(STATUS_USAGE, "--contacts: more than %d files", CONTACT_FILES_MAX);
     options->file[options->files++] = text;

@@ -78,10 +78,11 @@ int contacts_read(const char *pattern, const struct bed *bed, const struct walls
     if (status) return status;
     status = lines_open(&lines, path);
     if (status) return status;
-    for (bool more = true, begun = false; !status;) {
+    bool begun = false;
+    for (bool more = true; !status;) {
         status = lines_next(&lines, &more);
         if (status || !more) break;
-        if (lines_blank(&lines) || *lines.text == '#') continue;
+        if (lines_blank(&lines) || lines_comment(&lines)) continue;
         status = fields_split(&fields, lines.text, ",; \t\r");
         if (!status && !begun && !is_header(&fields))
             status = lines_fault(&lines, "the header is not i,j,W/K");
@@ -89,6 +90,7 @@ int contacts_read(const char *pattern, const struct bed *bed, const struct walls
             status = take_contact(&lines, &fields, bed, walls, to);
         begun = true;
     }
+    if (!status && !begun) status = message_at(STATUS_INPUT, lines.name, 0, "there is no header i,j,W/K");
     lines_close(&lines);
     free(fields.at);
     return status;

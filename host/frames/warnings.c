@@ -21,12 +21,15 @@ enum kind {
     CONTACT_TABLE,
     GAS_TABLE,
     CLOSED_BED,
+    WAVES,
     OF_THE_LIBRARY /* and then a fibrad_warning_code */
 };
 
-#define RADIUS_LARGE 0.1  /* [m] particles hardly have a larger mean radius */
-#define PERIOD_OFF   1e-3 /* relative: users type boxes with few digits */
-#define TIME_LEAST   1e-9 /* relative: times in hours are rounded */
+#define RADIUS_LARGE 0.1      /* [m] particles hardly have a larger mean radius */
+#define PERIOD_OFF   1e-3     /* relative: users type boxes with few digits */
+#define WAVES_LEAST  5e-3     /* [m K] radius times temperature: smaller spheres are no larger than wavelengths */
+#define WIEN         2.898e-3 /* [m K] */
+#define TIME_LEAST   1e-9     /* relative: times in hours are rounded */
 /* Bounds with a margin of 2 beyond all solids, from aerogel to uranium. */
 #define CAPACITY_LOW  30.0 /* [J/(kg K)] */
 #define CAPACITY_HIGH 3e4
@@ -166,6 +169,18 @@ static double mean_radius(const struct bed *bed) {
 void warn_unit(struct warned *warned, const struct bed *bed) {
     if (mean_radius(bed) > RADIUS_LARGE && is_new(warned, OTHER_UNIT))
         WARN(0, "radii of %g are taken as metres; --length-unit m, or mm for example, says the unit", mean_radius(bed));
+}
+
+void warn_waves(struct warned *warned, const struct bed *bed, double hottest) {
+    uint32_t count = 0, first = 0;
+    for (uint32_t i = 0; i < bed->n; ++i)
+        if (bed->r[i] * bed->metres * hottest < WAVES_LEAST && count++ == 0) first = i;
+    if (count > 0 && hottest > 0 && is_new(warned, WAVES))
+        message_at(
+            STATUS_OK, warned->file, bed->line[first],
+            "warning: sphere %lld (one of %u) has a radius of %.2g m. Radiation of %g K has wavelengths of %.2g m: "
+            "geometrical optics do not hold for such spheres and gaps",
+            (long long)bed_name(bed, first), count, bed->r[first] * bed->metres, hottest, WIEN / hottest);
 }
 
 /* ---- walls ------------------------------------------------------------------------------------------------------ */

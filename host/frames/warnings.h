@@ -31,6 +31,9 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
 /* Warns if radii without a unit are too large for metres. */
 void warn_unit(struct warned *warned, const struct bed *bed);
 
+/* Warns of spheres that are no larger than wavelengths of the hottest radiation [K]. */
+void warn_waves(struct warned *warned, const struct bed *bed, double hottest);
+
 /* Warns of what the library finds in its bed, its sources and its factors. kelvins: temperatures are given in kelvins.
  */
 void warn_made(struct warned *warned, const struct bed *bed, const struct walls *walls, const fibrad_bed *made,

@@ -59,14 +59,13 @@ static int find_conductivities(struct heat *h) {
 /* Warns of temperatures. If none is given within a closed bed, that of the surroundings is the level. */
 static void warn_levels(struct heat *h) {
     struct warned *warned = &h->options.warned;
-    bool known = false;
+    double hottest = -1;
     const char *column = bed_options_column(&h->options, &h->given.temperature);
     if (column && h->given.zero == 0) warn_celsius(warned, column);
-    for (uint32_t i = 0; i < h->bed->n && !known; ++i) known = !isnan(h->values.temperature[i]);
-    for (uint32_t k = 0; k < h->walls.count; ++k) {
-        known = known || !isnan(h->values.wall_temperature[k]);
-    }
-    if (h->given.ambient && known && walls_closed(&h->walls, h->bed)) warn_closed(warned);
+    for (uint32_t i = 0; i < h->bed->n; ++i) hottest = fmax(hottest, h->values.temperature[i]);
+    for (uint32_t k = 0; k < h->walls.count; ++k) hottest = fmax(hottest, h->values.wall_temperature[k]);
+    warn_waves(warned, h->bed, fmax(hottest, h->given.surroundings)); /* not a number where none is given */
+    if (h->given.ambient && hottest >= 0 && walls_closed(&h->walls, h->bed)) warn_closed(warned);
 }
 
 /* Reads what is given of spheres and walls, and makes sure of the unit of length. */

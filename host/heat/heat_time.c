@@ -192,7 +192,8 @@ static int library_status(struct time_run *m, int status) {
     if (refused) return refused;
     if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(&h->options, h->bed, status, &fault);
     progress_stop(&h->options.progress);
-    return message_at(STATUS_INPUT, h->options.name, 0, "after %g s no step keeps all temperatures above 0 K%s", m->now,
+    return message_at(STATUS_INPUT, h->options.name, 0, "after %g s no step keeps all temperatures above 0 K%s",
+                      m->points > 0 ? m->point[m->points - 1].time : m->now,
                       h->time.step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
@@ -241,6 +242,8 @@ static int write_state(struct time_run *m) {
         if (!isnan(m->wall[k])) h->result.wall_temperature[k] = m->wall[k];
     light_add(h);
     memcpy(h->result.temperature, m->span.temperature, h->bed->n * sizeof *m->span.temperature);
+    for (uint32_t i = 0; i < h->bed->n; ++i)
+        h->result.temperature_error[i] = NAN; /* this solution has not found them */
     if (isnan(h->given.surroundings)) shown.surroundings = NAN;
     status = heat_write(h, &m->bed, &(struct contents){.time = &m->now, .sources = &shown});
     ++m->bed.frame;

@@ -1,4 +1,5 @@
-/* stl.c - triangles of an STL file, text or binary, which may be packed by gzip. SPDX-License-Identifier: MIT
+/* stl.c - triangles of an STL file, text or binary, or of an OBJ file; may be packed by gzip.
+ * SPDX-License-Identifier: MIT
  *
  * A binary file has 80 bytes, the number of triangles, and 50 bytes per triangle: normal, corners, two bytes without
  * meaning. Its first bytes may be "solid", as in a text file. So the length of the file decides. */
@@ -139,19 +140,73 @@ static int read_text(struct stl *stl, struct lines *lines) {
         status = lines_next(lines, &more);
         if (status || !more) break;
         status = fields_split_blanks(&fields, lines->text);
-        if (!status && fields.n > 0) status = read_line(stl, lines, &fields, &state);
+        if (!status && fields.n > 0 && *fields.at[0] != '#') status = read_line(stl, lines, &fields, &state);
     }
     if (!status && (state != OUTSIDE || lines->truncated)) status = lines_fault(lines, "the file ends within a solid");
     free(fields.at);
     return status;
 }
 
+/* ---- OBJ -------------------------------------------------------------------------------------------------------- */
+
+/* Vertices of an OBJ file. */
+struct vertices {
+    double (*at)[3];
+    size_t n;
+};
+
+/* Reads the face `f a b c ...`, whose corners may be a/texture/normal, and count from 1 or, below 0, from the last. A
+ * polygon becomes triangles about its first corner. */
+static int read_face(struct stl *stl, const struct lines *lines, const struct fields *fields,
+                     const struct vertices *vertices) {
+    const double *corner[3] = {NULL, NULL, NULL};
+    int status = fields->n < 4 ? lines_fault(lines, "a face has three corners or more") : STATUS_OK;
+    for (size_t k = 1; k < fields->n && !status; ++k) {
+        int64_t number;
+        fields->at[k][strcspn(fields->at[k], "/")] = 0;
+        status = lines_whole(lines, "the corner", fields->at[k], &number);
+        if (status) return status;
+        if (number < 0) number += (int64_t)vertices->n + 1;
+        if (number < 1 || number > (int64_t)vertices->n)
+            return lines_fault(lines, "there is no vertex %s", fields->at[k]);
+        corner[1] = corner[2], corner[2] = vertices->at[number - 1];
+        if (k == 1) corner[0] = corner[2];
+        if (k < 3) continue;
+        status = add_triangle(stl, lines->name, lines->number);
+        for (int c = 0; c < 3 && !status; ++c) memcpy(stl->corner[stl->n - 1][c], corner[c], sizeof **stl->corner);
+    }
+    return status;
+}
+
+/* Reads vertices and faces. Other lines have nothing of the surface. The file is one solid. */
+static int read_obj(struct stl *stl, struct lines *lines) {
+    struct fields fields = {0};
+    struct vertices vertices = {0};
+    int status = add_solid(stl, "");
+    for (bool more = true, good = true; !status && !(status = lines_next(lines, &more)) && more;) {
+        lines->text[strcspn(lines->text, "#")] = 0;
+        status = fields_split_blanks(&fields, lines->text);
+        const char *first = fields.n > 0 ? fields.at[0] : "";
+        if (!status && strcmp(first, "v") == 0) {
+            if (fields.n > 4) fields.n = 4; /* behind x y z a weight or a colour may stand */
+            vertices.at = memory_grown(vertices.at, vertices.n, sizeof *vertices.at, &good);
+            status = good ? read_corner(lines, &fields, vertices.at[vertices.n++]) : message_memory();
+        } else if (!status && strcmp(first, "f") == 0) {
+            status = read_face(stl, lines, &fields, &vertices);
+        }
+    }
+    free(vertices.at);
+    free(fields.at);
+    return status;
+}
+
 /* ---- either ----------------------------------------------------------------------------------------------------- */
 
-/* Whether the bytes can only be text: they begin with "solid", and the first 512 have no 0. */
-static bool is_text(const char *bytes, size_t size) {
-    const char *begin = bytes + strspn(bytes, " \t\r\n\v\f");
-    return strncasecmp(begin, "solid", 5) == 0 && !memchr(bytes, 0, size < 512 ? size : 512);
+/* Skips blanks and comments. */
+static const char *first_word(const char *text) {
+    static const char blanks[] = " \t\r\n\v\f";
+    for (text += strspn(text, blanks); *text == '#'; text += strspn(text, blanks)) text += strcspn(text, "\r\n");
+    return text;
 }
 
 static int read_either(struct stl *stl, struct lines *lines) {
@@ -162,16 +217,18 @@ static int read_either(struct stl *stl, struct lines *lines) {
     if (size == 0) return message_at(STATUS_INPUT, lines->name, 0, "the file is empty");
     const uint32_t count = size >= HEAD ? word_of(bytes + HEAD - 4) : 0;
     if (size >= HEAD && size - HEAD == (uint64_t)count * RECORD) return read_records(stl, lines->name, bytes, count);
-    stl->text = is_text(bytes, size);
+    const bool text = size < HEAD || !memchr(bytes, 0, size < 512 ? size : 512);
+    const bool solid = strncasecmp(first_word(bytes), "solid", 5) == 0;
+    stl->text = text && (solid || strncmp(bytes, "v ", 2) == 0 || strstr(bytes, "\nv "));
     if (stl->text) {
         lines_return(lines);
         lines_drop(lines);
-        return read_text(stl, lines);
+        return solid ? read_text(stl, lines) : read_obj(stl, lines);
     }
-    if (size < HEAD) return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file");
+    if (text) return message_at(STATUS_INPUT, lines->name, 0, "this is no STL file and no OBJ file");
     return message_at(STATUS_INPUT, lines->name, 0,
-                      "the file has %zu bytes; a binary STL file of %u triangles has %llu", size, count,
-                      (unsigned long long)HEAD + (unsigned long long)count * RECORD);
+                      "this is no STL file: a binary one of %u triangles has %llu bytes, not %zu", count,
+                      (unsigned long long)HEAD + (unsigned long long)count * RECORD, size);
 }
 
 int stl_read(struct stl *stl, const char *path) {

@@ -21,8 +21,9 @@ struct reader {
 };
 
 int reader_open(struct reader **reader, const char *path, const struct read_options *options) {
-    static const struct format *const formats[] = {&format_dump,    &format_xyz,     &format_data,  &format_vtk,
-                                                   &format_vtk_xml, &format_mercury, &format_table, NULL};
+    static const struct format *const formats[] = {&format_dump,    &format_xyz,        &format_data,
+                                                   &format_vtk,     &format_vtk_series, &format_vtk_xml,
+                                                   &format_mercury, &format_table,      NULL};
     struct reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return message_memory();
     r->source.options = *options;
@@ -71,6 +72,7 @@ static int report_end_of_file(const struct reader *r) {
     if (part && r->frame > 0) return source_fail(source, "%s; the last whole frame is %" PRId64, why, r->frame - 1);
     if (part) return source_fail(source, "%s", why);
     if (r->found) return STATUS_OK;
+    if (r->frame == 0) return message_at(STATUS_INPUT, source->lines.name, 0, "there is no frame in the file");
     return message_at(STATUS_INPUT, source->lines.name, 0, "there is no frame %" PRId64 "; the last is %" PRId64,
                       source->options.frames.begin, r->frame - 1);
 }

@@ -10,7 +10,7 @@
 #include "read/read_format.h"
 #include "text/read_number.h"
 
-enum { IMAGE_FLAGS = 3, COLUMNS_MAX = 1000, WORD = 40 };
+enum { IMAGE_FLAGS = 3, COLUMNS_MAX = 1000, WORD = 40, STYLE = 80 };
 
 /* The known styles of atoms and their columns. */
 static const struct {
@@ -133,21 +133,43 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
 
 /* ---- atoms ------------------------------------------------------------------------------------------------------ */
 
-/* Guesses the style if the file does not name it. Only style atomic has five columns, or eight with image flags. */
-static int guess_style(struct source *source, char *style) {
-    char line[200];
-    int n = 0, length;
-    bool more;
-    const int status = lines_next_text(&source->lines, &more);
-    if (status || !more) return status;
-    snprintf(line, sizeof line, "%.*s", (int)strcspn(source->lines.text, "#"), source->lines.text);
-    for (const char *text = line; sscanf(text, "%*s%n", &length) != EOF; text += length) ++n;
-    if (n != 5 && n != 8)
-        return source_fail(source, "the style of the atoms is not said; write `Atoms # sphere` above them if their "
-                                   "columns are id type diameter density x y z");
-    memcpy(style, "atomic", sizeof "atomic");
-    lines_hold(&source->lines);
-    return STATUS_OK;
+/* Whether a row of spheres may have its diameter and density, and its centre, at these columns. */
+static bool row_fits(int n, const double *value, int diameter, int centre, const struct bed *bed) {
+    bool good = (n == 7 || n == 7 + IMAGE_FLAGS) && value[diameter] > 0 && value[diameter + 1] > 0;
+    for (int axis = 0; axis < 3 && good; ++axis) {
+        const double at = value[centre + axis], low = bed->low[axis], high = bed->high[axis];
+        good = low == high || (at >= low - value[diameter] && at <= high + value[diameter]);
+    }
+    return good;
+}
+
+/* Guesses the style from the first rows if the file does not name it. Only style atomic has five columns, or eight with
+ * image flags. Of spheres the first layout counts in which sizes are above 0 and centres lie in the box. */
+static int guess_style(struct source *source, int64_t atoms, char *style, const struct bed *bed) {
+    struct lines *lines = &source->lines;
+    bool more, atomic = true, sphere = true, hybrid = true;
+    int status;
+    lines_keep(lines);
+    for (int64_t row = 0; row < atoms && row < 100; ++row) {
+        double v[7 + IMAGE_FLAGS + 1];
+        status = lines_next_text(lines, &more);
+        if (status || !more) return status;
+        const int n = sscanf(lines->text, "%lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", &v[0], &v[1], &v[2], &v[3],
+                             &v[4], &v[5], &v[6], &v[7], &v[8], &v[9], &v[10]);
+        atomic = atomic && (n == 5 || n == 5 + IMAGE_FLAGS);
+        sphere = sphere && row_fits(n, v, 2, 4, bed);
+        hybrid = hybrid && row_fits(n, v, 5, 2, bed);
+        if (!atomic && !sphere && !hybrid)
+            return source_fail(source, "the style of the atoms is not said, and these columns do not tell it; write "
+                                       "`Atoms # sphere` above them if they are id type diameter density x y z");
+    }
+    lines_return(lines);
+    lines_drop(lines);
+    snprintf(style, STYLE, "%s", atomic ? "atomic" : sphere ? "sphere" : "hybrid sphere");
+    if (atomic) return STATUS_OK;
+    return message_at(STATUS_OK, lines->name, lines->number,
+                      "warning: the style of the atoms is not said; their columns are taken as %s",
+                      sphere ? "id type diameter density x y z" : "id type x y z diameter density");
 }
 
 /* Finds the columns of a style. *more: how many unknown columns may follow. */
@@ -172,11 +194,11 @@ static int find_style(struct source *source, const char *style, size_t *more, st
 
 static int read_data(struct source *source, struct bed *bed) {
     size_t more;
-    char style[80] = "";
+    char style[STYLE] = "";
     int64_t atoms = 0;
     bool there;
     int status = read_header(source, &atoms, style, bed);
-    if (!status && !*style) status = guess_style(source, style);
+    if (!status && !*style) status = guess_style(source, atoms, style, bed);
     if (!status) status = find_style(source, style, &more, bed);
     if (!status) status = lines_next_text(&source->lines, &there);
     if (!status && there) lines_hold(&source->lines);

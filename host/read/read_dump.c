@@ -1,19 +1,22 @@
 /* read_dump.c - beds from LAMMPS and LIGGGHTS text dumps. SPDX-License-Identifier: MIT
  *
  * A dump is a sequence of frames, and a frame is a sequence of sections. Each section begins with a line `ITEM: NAME
- * ...`. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the columns, is the last section of a
- * frame. UNITS stands before the first frame only. */
+ * ...`, and some files have a % before it. TIMESTEP stands near the beginning of a frame. ATOMS, with the names of the
+ * columns, is the last section of a frame. UNITS stands before the first frame only. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "read/read_format.h"
 
-static bool is_dump(const struct source *source) { return source_begins(source, "ITEM:"); }
+static bool is_dump(const struct source *source) {
+    return source_begins(source, "ITEM:") || source_begins(source, "%ITEM:") || source_begins(source, "% ITEM:");
+}
 
 /* If the current line begins with `name`: the rest of the line. Else NULL. */
 static char *item(const struct source *source, const char *name) {
-    return lines_begin(&source->lines, name) ? source->lines.text + strlen(name) : NULL;
+    char *text = source->lines.text + strspn(source->lines.text, "% ");
+    return strncmp(text, name, strlen(name)) == 0 ? text + strlen(name) : NULL;
 }
 
 /* Reads the next line of a section. */

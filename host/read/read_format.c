@@ -90,7 +90,7 @@ int source_skip(struct source *source, int64_t rows, const char *what, const cha
         bool there;
         const int status = lines_next(&source->lines, &there);
         if (status) return status;
-        const bool stopped = there && stop && lines_begin(&source->lines, stop);
+        const bool stopped = there && stop && strstr(source->lines.text, stop);
         if (there && !stopped) continue;
         source->found = FOUND_PART;
         snprintf(source->lack, LACK_MAX, "the frame ends after %" PRId64 " %s; %" PRId64 " were declared", k, what,

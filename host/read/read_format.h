@@ -71,8 +71,8 @@ const char *source_begin(const struct source *source, size_t *size);
 /* Whether the file begins with a text. */
 bool source_begins(const struct source *source, const char *text);
 
-extern const struct format format_data, format_dump, format_mercury, format_table, format_vtk, format_vtk_xml,
-    format_xyz;
+extern const struct format format_data, format_dump, format_mercury, format_table, format_vtk, format_vtk_series,
+    format_vtk_xml, format_xyz;
 
 /* Refuses a file of a known kind that has no spheres, and says what the file is. Status 0 or STATUS_INPUT. */
 int source_foreign(const struct source *source);

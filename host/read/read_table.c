@@ -2,7 +2,7 @@
  *
  * Commas, semicolons, tabs or blanks stand between values. A header names the columns. The header is the first line. If
  * that line has numbers only, the header is a comment before it, such as `# x y z r` or YADE's `#format x_y_z_r`. Names
- * may have units, such as `x [mm]` or `r (m)`. Other lines that begin with # are skipped. */
+ * may have units, such as `x [mm]` or `r (m)`. Other lines that begin with # or % are skipped. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,7 +22,7 @@ static bool is_yade(const char *text) { return strncmp(text, yade, strlen(yade))
 static int take_comment(struct header *header, bool *of_yade, const struct lines *lines) {
     struct header comment = {0};
     const bool format = is_yade(lines->text);
-    const char *names = lines->text + (format ? strlen(yade) : strspn(lines->text, "# \t"));
+    const char *names = lines->text + (format ? strlen(yade) : strspn(lines->text, "#% \t"));
     const int status = header_take(&comment, lines, names, format ? "_ \t" : NULL);
     const bool good = !status && columns_named(&comment.names);
     header_free(good ? header : &comment);
@@ -50,9 +50,9 @@ static int find_header(struct source *source, struct header *header, bool *of_ya
     bool more;
     int status;
     while (!(status = lines_next(lines, &more)) && more) {
-        if (*lines->text == '#') status = take_comment(header, of_yade, lines);
+        if (lines_comment(lines)) status = take_comment(header, of_yade, lines);
         if (status) return status;
-        if (*lines->text == '#' || lines_blank(lines)) continue;
+        if (lines_comment(lines) || lines_blank(lines)) continue;
         *separator = *of_yade ? ' ' : header_separator(lines->text);
         if (!header_is_row(lines)) return header_take(header, lines, lines->text, NULL);
         if (header->names.n == 0) status = number_table(source, header, *separator);
@@ -89,7 +89,7 @@ static int read_table(struct source *source, struct bed *bed) {
     int status = find_header(source, &header, &of_yade, &separator);
     if (!status && header.names.n > 0) status = find_columns(source, &header, separator, bed);
     while (!status && !(status = lines_next(lines, &more)) && more)
-        if (*lines->text != '#' && !lines_blank(lines)) status = read_row(source, &header, of_yade, separator, bed);
+        if (!lines_comment(lines) && !lines_blank(lines)) status = read_row(source, &header, of_yade, separator, bed);
     header_free(&header);
     return status;
 }

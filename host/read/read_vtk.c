@@ -1,6 +1,7 @@
 /* read_vtk.c - beds from VTK files, legacy or XML, with points and an array of radii. SPDX-License-Identifier: MIT
  *
- * The spheres of a .pvtp or .pvtu file are in other files, its pieces. */
+ * The spheres of a .pvtp, .pvtu or .vtm file are in other files, its pieces. A .pvd file names files and their times.
+ */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,7 +14,7 @@
 #include "text/read_number.h"
 #include "text/unit.h"
 
-enum { RADIUS, DIAMETER, ID, GHOST, EXTRAS };
+enum { RADIUS, DIAMETER, ID, GHOST, EXTRAS, DEEPEST = 3 /* files that files name */ };
 
 /* A VTK file that is read into a bed. */
 struct vtk_file {
@@ -23,6 +24,7 @@ struct vtk_file {
     size_t count;
     double *factor; /* [extras] from the units of further columns to the expected ones */
     bool begun;     /* a piece with points has been read */
+    int depth;      /* of pieces */
 };
 
 /* Whether a text is within the first 1000 bytes of the file. */
@@ -39,6 +41,8 @@ static bool begins_near(const struct source *source, const char *wanted) {
 static bool is_legacy(const struct source *source) { return source_begins(source, "# vtk DataFile"); }
 
 static bool is_xml(const struct source *source) { return begins_near(source, "<VTKFile"); }
+
+static bool is_series(const struct source *source) { return is_xml(source) && begins_near(source, "<Collection"); }
 
 /* Refuses a piece that lacks an array. */
 static int vtk_check(const struct vtk_file *file, const struct vtk_grid *grid) {
@@ -118,15 +122,15 @@ static int take_points_of(struct vtk_grid *grid, void *vtk_file) {
 }
 
 typedef int read_grid(struct vtk_grid *grid);
-typedef int open_piece(const char *source, void *vtk_file);
+static int read_piece(const char *source, void *vtk_file);
 
 /* Reads the file of file->source. */
-static int read_file(struct vtk_file *file, read_grid *read, open_piece *open) {
+static int read_file(struct vtk_file *file, read_grid *read) {
     struct vtk_grid grid = {.file = file->source->lines.name,
                             .wanted = file->wanted,
                             .count = file->count,
                             .take = take_points_of,
-                            .open = open,
+                            .open = file->depth < DEEPEST ? read_piece : NULL,
                             .context = file};
     char *text;
     size_t size;
@@ -156,9 +160,9 @@ static int read_piece(const char *source, void *vtk_file) {
         status = message_at(STATUS_INPUT, whole->lines.name, 0, "its piece %.200s is no file", path);
     if (!status) status = lines_open(&piece.lines, path);
     if (!status && !is_xml(&piece)) status = source_fail(&piece, "this piece is no XML file of VTK");
-    file->source = &piece;
-    if (!status) status = read_file(file, vtk_read_xml, NULL);
-    file->source = whole;
+    file->source = &piece, ++file->depth;
+    if (!status) status = read_file(file, vtk_read_xml);
+    file->source = whole, --file->depth;
     lines_close(&piece.lines);
     free(path);
     return status;
@@ -215,21 +219,45 @@ static int want(struct vtk_file *file) {
     return status;
 }
 
-static int read_vtk(struct source *source, read_grid *read, open_piece *open, struct bed *bed) {
+/* Goes through the files of the next time, and reads them if there is a vtk_file. */
+static int next_time(struct source *source, struct vtk_file *reads) {
+    char first[VTK_WORD], time[VTK_WORD], name[VTK_WORD];
+    bool more;
+    int status = STATUS_OK;
+    source->found = FOUND_END;
+    while (!status && !(status = lines_next(&source->lines, &more)) && more) {
+        const char *text = source->lines.text;
+        if (!vtk_next_set(&text, time, name)) continue;
+        if (strstr(text, "<DataSet")) return source_fail(source, "each DataSet must stand on a line of its own");
+        if (source->found == FOUND_FRAME && strcmp(time, first) != 0) return lines_hold(&source->lines), STATUS_OK;
+        memcpy(first, time, sizeof first);
+        source->found = FOUND_FRAME;
+        if (reads) status = read_piece(name, reads);
+    }
+    return status;
+}
+
+static int skip_series(struct source *source) { return next_time(source, NULL); }
+
+/* read NULL: a series. */
+static int read_vtk(struct source *source, read_grid *read, struct bed *bed) {
     const struct read_options *options = &source->options;
     struct vtk_file file = {.source = source, .bed = bed, .count = EXTRAS + options->extras + options->rules};
     file.wanted = calloc(file.count, sizeof *file.wanted);
     file.factor = calloc(options->extras + 1, sizeof *file.factor);
     int status = file.wanted && file.factor ? want(&file) : message_memory();
-    if (!status) status = read_file(&file, read, open);
+    if (!status) status = read ? read_file(&file, read) : next_time(source, &file);
     for (size_t k = 0; file.wanted && k < file.count; ++k) free(file.wanted[k].values);
     free(file.wanted);
     free(file.factor);
     return status;
 }
 
-static int read_legacy(struct source *source, struct bed *bed) { return read_vtk(source, vtk_read_legacy, NULL, bed); }
+static int read_legacy(struct source *source, struct bed *bed) { return read_vtk(source, vtk_read_legacy, bed); }
 
-static int read_xml(struct source *source, struct bed *bed) { return read_vtk(source, vtk_read_xml, read_piece, bed); }
+static int read_xml(struct source *source, struct bed *bed) { return read_vtk(source, vtk_read_xml, bed); }
 
-const struct format format_vtk = {is_legacy, NULL, read_legacy}, format_vtk_xml = {is_xml, NULL, read_xml};
+static int read_series(struct source *source, struct bed *bed) { return read_vtk(source, NULL, bed); }
+
+const struct format format_vtk = {is_legacy, NULL, read_legacy}, format_vtk_xml = {is_xml, NULL, read_xml},
+                    format_vtk_series = {is_series, skip_series, read_series};

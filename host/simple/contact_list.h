@@ -9,7 +9,8 @@
 static inline double length_of(double x, double y, double z) { return sqrt(x * x + y * y + z * z); }
 
 /* Contacts of spheres that need not be a bed: they may lie inside one another or beyond walls. Otherwise as
- * fibrad_bed_contacts. Free the list with free(). Errors: _ARGUMENT, _MEMORY. */
+ * fibrad_bed_contacts. config: walls and meshes that fibrad_scene_init has accepted. Free the list with free().
+ * Errors: _ARGUMENT, _MEMORY; _GEOMETRY: a period is less than the largest radius. */
 int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres *spheres,
                          const fibrad_contact_rule *rule, fibrad_contact_list **list);
 

@@ -96,16 +96,22 @@ static int sort_class(struct search *s, struct size_class *class) {
     return note_starts(s, class);
 }
 
-/* Sorts spheres into classes and cells. */
+/* Sorts spheres into classes and cells. Refuses numbers with which the search would not end. */
 static int sort_spheres(struct search *s) {
     double largest = 0;
     for (uint32_t i = 0; i < s->n; ++i) {
+        const double *at = s->at[i];
+        if (!(fabs(at[0]) + fabs(at[1]) + fabs(at[2]) <= 3 * FIBRAD_LENGTH_MAX && at[3] >= FIBRAD_LENGTH_MIN &&
+              at[3] <= FIBRAD_LENGTH_MAX))
+            return FIBRAD_E_ARGUMENT;
         largest = larger_of(largest, s->at[i][3]);
         for (int axis = 0; axis < 3; ++axis) {
             s->low[axis] = i > 0 ? smaller_of(s->low[axis], s->at[i][axis]) : s->at[i][axis];
             s->high[axis] = i > 0 ? larger_of(s->high[axis], s->at[i][axis]) : s->at[i][axis];
         }
     }
+    for (int axis = 0; axis < 3; ++axis)
+        if (s->period[axis] != 0 && !(s->period[axis] >= largest)) return FIBRAD_E_GEOMETRY;
     uint32_t to = 0;
     int status = FIBRAD_OK;
     for (uint32_t c = 0; c < CLASSES_MAX && to < s->n && !status; ++c) {

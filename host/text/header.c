@@ -1,6 +1,7 @@
 /* header.c - names and units of the columns of a table, and its rows. SPDX-License-Identifier: MIT */
 #include "text/header.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,6 +90,9 @@ void header_free(struct header *header) {
 int header_take(struct header *header, const struct lines *lines, const char *text, const char *separators) {
     header_free(header);
     header->line = lines->number;
+    for (const char *c = text; *c; ++c)
+        if (iscntrl((unsigned char)*c) && !isspace((unsigned char)*c))
+            return lines_fault(lines, "binary data; a text file is expected");
     header->text = strdup(text);
     if (!header->text) return message_memory();
     const char separator = header_separator(header->text);

@@ -171,8 +171,8 @@ static int curve_point(struct table *table) {
 static int take_table_line(struct table *table, bool *header_may_follow) {
     struct lines *lines = &table->lines;
     if (lines_blank(lines)) return STATUS_OK;
-    if (*lines->text == '#') {
-        const char *names = lines->text + strspn(lines->text, "# \t");
+    if (lines_comment(lines)) {
+        const char *names = lines->text + strspn(lines->text, "#% \t");
         return *header_may_follow && *names && !strchr(names, '"') ? take_names(table, names) : STATUS_OK;
     }
     if (*header_may_follow && !header_is_row(lines)) {

@@ -169,6 +169,8 @@ int lines_rest(struct lines *lines, char **rest, size_t *size) {
 
 bool lines_blank(const struct lines *lines) { return lines->text[strspn(lines->text, blanks)] == 0; }
 
+bool lines_comment(const struct lines *lines) { return *lines->text == '#' || *lines->text == '%'; }
+
 bool lines_begin(const struct lines *lines, const char *with) { return strncmp(lines->text, with, strlen(with)) == 0; }
 
 static int add_field(struct fields *fields, char *text) {

@@ -69,6 +69,9 @@ int lines_rest(struct lines *lines, char **rest, size_t *size);
 /* Whether the current line has blanks only. */
 bool lines_blank(const struct lines *lines);
 
+/* Whether the current line is a comment: it begins with # or %. */
+bool lines_comment(const struct lines *lines);
+
 /* Whether the current line begins with a text. */
 bool lines_begin(const struct lines *lines, const char *with);
 

@@ -1,7 +1,8 @@
 /* port.h - all that the kernel takes from the C library and the compiler. SPDX-License-Identifier: MIT
  *
  * For another target, -DFIBRAD_PORT_HEADER='"my_port.h"' names a header that defines fibrad_sqrt, fibrad_copy and
- * fibrad_zero as below. The square root must round correctly (IEEE 754). */
+ * fibrad_zero as below. The square root must round correctly (IEEE 754). So must all arithmetic, and NaN and infinity
+ * must be told from numbers: with -ffast-math, -Ofast and the like the kernel does not compile. */
 #ifndef FIBRAD_BASE_PORT_H
 #define FIBRAD_BASE_PORT_H
 
@@ -13,6 +14,11 @@
 /* 16: only half precision is computed in another precision */
 #if FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
 #error "fibrad needs arithmetic in the precision of its types (on 32-bit x86: -msse2 -mfpmath=sse)"
+#endif
+
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) ||                              \
+    defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
+#error "fibrad needs IEEE 754 arithmetic with NaN and infinity: compile it without -ffast-math and -Ofast"
 #endif
 
 #if defined(FIBRAD_PORT_HEADER)

@@ -25,8 +25,8 @@ static const char status_text[][106] = {
 };
 
 static const char why_text[][74] = {
-    [FIBRAD_WHY_PLACE] = "a coordinate is not a number, infinite or too far away",
-    [FIBRAD_WHY_RADIUS] = "the radius is not above 0 or is out of range",
+    [FIBRAD_WHY_PLACE] = "a coordinate is not a number, or beyond 3e13 smallest radii or 1e150",
+    [FIBRAD_WHY_RADIUS] = "the radius is not above 0, or not within 1e-150 to 1e150",
     [FIBRAD_WHY_BEYOND] = "the centre lies beyond a wall",
     [FIBRAD_WHY_WALL] = "contradicts the box or another wall, or its position or size is not valid",
     [FIBRAD_WHY_TEMPERATURE] = "the temperature is out of range",

@@ -35,6 +35,7 @@
  *   R  cubes, cups and mono2000 with insulated walls, docs/accuracy.md
  *   M  small spheres beside triangles against the same beside planes, which are divided
  *   L  dim walls beside few spheres, tests/test_heat_walls.c residuals_are_estimated
+ *   G  150 small plates before a sphere, tests/test_heat_mesh.c
  *   H  240 pairs of spheres and 400 spheres of poly2000, docs/accuracy.md */
 
 /* 1. beams and rays */
@@ -43,7 +44,9 @@
 #define BETWEEN_BEAMS_ERROR .25                    /* D: what one direction brings, in the share of open beams */
 #define FLOAT_ERROR         0x1p-25                /* what a surface exchanges: factors of pencils are floats */
 #define RAY_ERROR           FIBRAD_HEAT_RAY_ERROR  /* F: even minus odd rays of a wall, two independent sequences */
-#define RAY_SAMPLES         16                     /* F: most samples of a mesh, whose rays are in so many ranges */
+#define CHANCE_ERROR        .4  /* G: of a mesh that meets spheres: the error of its rays if chance sends them */
+#define BUNDLE_ERROR        2.0 /* G: the same of beams that meet it, which come in bundles */
+#define RAY_SAMPLES         16  /* F: most samples of a mesh, whose rays are in so many ranges */
 
 /* 2. patches */
 #define EXTRAPOLATION_ERROR .2   /* S: change by extrapolation, with PATCHES; as the root of the edge of a patch */
@@ -121,9 +124,12 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, f
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray *ray = &heat->ray[k];
         if (ray->area == 0) continue;
-        from = other_of_patch(heat, ray->from, from), to = other_of_patch(heat, ray->to, to);
         const double flow = ray->area * (heat->solution.source[ray->to] - heat->solution.source[ray->from]);
-        half[from] += k % 2 ? -flow : flow, half[to] -= k % 2 ? -flow : flow;
+        from = other_of_patch(heat, ray->from, from);
+        half[from] += k % 2 ? -flow : flow;
+        if (ray->to < fibrad_heat_others(heat)) continue; /* sweep.c has the samples of spheres */
+        to = other_of_patch(heat, ray->to, to);
+        half[to] -= k % 2 ? -flow : flow;
         if ((share[from] > 0) != (share[to] > 0)) errors->outside_area += ray->area;
     }
     for (uint32_t b = 0; b < bodies; b++) {
@@ -131,6 +137,25 @@ static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, f
         outside += share[b] * half[b];
     }
     errors->outside += squared(outside);
+}
+
+/* The square of the error of what rays of a mesh and beams of spheres bring each other. So few of them hit that it is
+ * chance, more or less, how many do. A ray that meets a sphere tells how many beams of the sphere should meet the mesh.
+ * The mesh may also lack one ray, or have one too many. 0: no ray meets a sphere. */
+static double chance_of_rays(const fibrad_heat *heat, const fibrad_heat_rays *sent) {
+    double sum = 0, squares = 0, beams = 0;
+    bool met = false;
+    for (uint32_t k = sent->first; k < sent->first + sent->count; k++) {
+        const fibrad_heat_ray *ray = &heat->ray[k];
+        if (ray->area == 0) continue;
+        const double flow = ray->area * (heat->solution.source[ray->to] - heat->solution.source[ray->from]);
+        sum += flow, squares += squared(flow);
+        if (ray->to >= fibrad_heat_others(heat)) continue;
+        beams += squared(flow) * (1 / (ray->area * sent->density) - 1);
+        met = true;
+    }
+    const double one = sum / sent->count, rays = fibrad_max(0, squares - sum * one);
+    return met ? squared(CHANCE_ERROR) * rays + squared(BUNDLE_ERROR) * beams + squared(one) : 0;
 }
 
 /* Samples the rays of all walls. Those of a mesh are divided into ranges, which have sequences of their own. Returns
@@ -142,10 +167,15 @@ static double sample_all_rays(const fibrad_heat *heat, fibrad_heat_errors *error
         const uint32_t *first = heat->scene->mesh.first, mesh = slot - FIBRAD_MESHES;
         const bool many = slot >= FIBRAD_MESHES && first[mesh + 1] - first[mesh] >= RAY_SAMPLES;
         const uint32_t ranges = many ? RAY_SAMPLES : 1;
-        more += ranges - 1;
+        const double chance = slot >= FIBRAD_MESHES ? chance_of_rays(heat, sent) : 0;
+        const double before = chance > 0 ? errors->rays[FIBRAD_WALLS + mesh] : 0;
         for (uint32_t k = 0; k < ranges; k++)
             sample_rays(heat, sent->first + (uint32_t)((uint64_t)sent->count * k / ranges),
                         sent->first + (uint32_t)((uint64_t)sent->count * (k + 1) / ranges), errors);
+        more += chance > 0 ? RAY_SAMPLES - 1 : ranges - 1;
+        if (!(chance > 0)) continue;
+        errors->rays[FIBRAD_WALLS + mesh] = before + chance / squared(RAY_ERROR);
+        errors->meets[FIBRAD_WALLS + mesh] = true;
     }
     return more;
 }
@@ -163,7 +193,8 @@ static double beam_error(const fibrad_heat *heat, uint32_t b) {
 
 /* Of what beams and rays bring a surface. */
 static double sampled_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
-    return beam_error(heat, b) * squared(heat->samples.halves[b]) + ray_error(heat, errors, b);
+    const double met = b < heat->spheres ? squared(CHANCE_ERROR) * heat->samples.seen[b].rays : 0;
+    return beam_error(heat, b) * squared(heat->samples.halves[b]) + ray_error(heat, errors, b) + met;
 }
 
 /* Of what no beam tells: between the directions that meet no sphere there may be spheres. If all spheres were asked
@@ -218,9 +249,11 @@ static few_links few_of_wall(const fibrad_heat *heat, const fibrad_heat_errors *
     const fibrad_heat_rays *sent = &heat->sent[slot];
     const double area = spread_of(heat, b).area;
     double rays = 0;
-    for (uint32_t r = sent->first; r < sent->first + sent->count; r++) rays += 2 * heat->ray[r].area;
+    for (uint32_t r = sent->first; r < sent->first + sent->count; r++)
+        rays += (heat->ray[r].to < fibrad_heat_others(heat) ? 1 : 2) * heat->ray[r].area;
     const double share = area > 0 ? fibrad_min(1, rays / area) : 0;
-    return (few_links){share > 0 ? FEW_ON_WALLS * share * errors->dim[1] / (2 * sent->density * heat->patch_area) : 0,
+    const double patch = fibrad_min(heat->patch_area, area);
+    return (few_links){share > 0 ? FEW_ON_WALLS * share * errors->dim[1] / (2 * sent->density * patch) : 0,
                        FEW_ON_WALLS * (1 - share) * errors->dim[0] * heat->config.patches / heat->beams};
 }
 
@@ -403,11 +436,12 @@ typedef struct absorbed_error {
 static absorbed_error absorbed_of(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b,
                                   const fibrad_heat_spread *own) {
     const double emission = fibrad_heat_is_insulated(heat, b) ? own->mean : heat->sources.emission[b];
+    const bool meets = b >= heat->spheres && errors->meets[b - heat->spheres];
+    const double few = meets ? few_error(heat, errors, b) : fibrad_heat_sent_back(heat, b) * squared(errors->few);
     return (absorbed_error){(sampled_emission(heat, errors, b, own->area) +
                              errors->sampled[b >= heat->spheres] * distance_of(errors, own)) /
                                 2,
-                            (squared(errors->common) + fibrad_heat_sent_back(heat, b) * squared(errors->few)) *
-                                squared(emission - errors->given),
+                            (squared(errors->common) + few) * squared(emission - errors->given),
                             squared(errors->walls / errors->all.area)};
 }
 

@@ -8,6 +8,10 @@
 #define FIBRAD_HEAT_BEAM_ERROR .7
 #define FIBRAD_HEAT_RAY_ERROR  1.75
 
+/* Differences of the rays of fine patches and of meshes are added to those of beams of spheres, whose error is a
+ * smaller part of the difference. So they are enlarged by this factor. */
+#define FIBRAD_HEAT_RAYS_WEIGHT (FIBRAD_HEAT_RAY_ERROR / FIBRAD_HEAT_BEAM_ERROR)
+
 /* The area of patches, and mean and variance of their radiosities. */
 typedef struct fibrad_heat_spread {
     double area, mean, variance;
@@ -24,7 +28,8 @@ typedef struct fibrad_heat_errors {
     /* squares of the differences between even and odd rays, summed over all walls that send rays: of the power of each
      * body that is not a sphere, and of that of the surroundings */
     double rays[FIBRAD_HEAT_OTHERS], outside;
-    double outside_area; /* L^2, for which the rays between walls and surroundings stand */
+    bool meets[FIBRAD_HEAT_OTHERS]; /* of these bodies, whether own rays that meet spheres count */
+    double outside_area;            /* L^2, for which the rays between walls and surroundings stand */
     fibrad_heat_spread all;
     double few;    /* error over power of a sphere among spheres that reflect all, from few beams per patch */
     double dim[2]; /* mean reflectivity by area */

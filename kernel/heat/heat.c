@@ -112,6 +112,8 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->first = fibrad_arena_take(arena, heat->bodies + 1, sizeof *heat->first);
     heat->leave = fibrad_arena_take(arena, heat->beams, sizeof *heat->leave);
     heat->ray = fibrad_arena_take(arena, heat->rays_capacity, sizeof *heat->ray);
+    heat->met = fibrad_arena_take(arena, heat->meshes > 0 ? heat->rays_capacity : 0, sizeof *heat->met);
+    heat->first_met = fibrad_arena_take(arena, heat->config.parts + 2, sizeof *heat->first_met);
     heat->solution.brought =
         fibrad_arena_take(arena, (size_t)others * heat->config.parts, sizeof *heat->solution.brought);
     heat->solution.back = fibrad_arena_take(arena, others, sizeof *heat->solution.back);

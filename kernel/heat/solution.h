@@ -44,7 +44,8 @@ static inline double fibrad_heat_enlarged(double area, double factor, double bac
 static inline double fibrad_heat_ray_area(const fibrad_heat *heat, const fibrad_heat_ray *ray) {
     const double *back = heat->solution.back;
     const uint32_t others = fibrad_heat_others(heat);
-    return fibrad_heat_enlarged(ray->area, FIBRAD_HEAT_RAYS_RETURN, back[ray->from - others], back[ray->to - others]);
+    return fibrad_heat_enlarged(ray->area, FIBRAD_HEAT_RAYS_RETURN, back[ray->from - others],
+                                ray->to < others ? 0 : back[ray->to - others]);
 }
 
 /* The power that a body absorbs at its patches. Radiosities are differences from that of the surroundings. */

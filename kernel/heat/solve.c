@@ -410,6 +410,7 @@ void fibrad_heat_start(fibrad_heat *heat) {
         send_radiosities(heat);
     else {
         fibrad_heat_link_pencils(heat);
+        fibrad_heat_link_rays(heat);
         heat->solution.phase = FIBRAD_HEAT_AREA;
     }
 }

@@ -12,17 +12,14 @@
 #define AHEAD  8
 #define BEYOND (FIBRAD_WALLS + 1)
 
-/* Differences of the rays of fine patches are added to those of beams, whose error is a smaller part of the difference
- * (errors.c). So they are enlarged by this factor. */
-#define RAYS_WEIGHT (FIBRAD_HEAT_RAY_ERROR / FIBRAD_HEAT_BEAM_ERROR)
-
 /* The area that a beam of a pencil stands for. If its two surfaces send out n and m beams per area, this is 1/(n + m).
- * So the beams of both together tell what they exchange. The weight is the number of beams that were followed for each
- * beam that was kept. In the sweep for the error, the weight is the difference between even and odd directions
- * instead. */
+ * So the beams of both together tell what they exchange, or beams and rays of a mesh. The weight is the number of beams
+ * that were followed for each beam that was kept. In the sweep for the error, the weight is the difference between even
+ * and odd directions instead. */
 static double beam_area(const fibrad_heat *heat, uint32_t owner, const fibrad_heat_pencil *pencil) {
-    const double other = pencil->body < heat->rows ? heat->density[pencil->body] : 0;
-    const double check = pencil->tilt / 32767. * (owner < heat->spheres ? 1 : RAYS_WEIGHT);
+    const double other =
+        pencil->body < heat->rows ? heat->density[pencil->body] : fibrad_heat_seeing(heat, pencil->body, owner);
+    const double check = pencil->tilt / 32767. * (owner < heat->spheres ? 1 : FIBRAD_HEAT_RAYS_WEIGHT);
     const double weight = heat->solution.phase == FIBRAD_HEAT_CHECK ? pencil->weight * check : pencil->weight;
     return weight / (heat->density[owner] + other);
 }
@@ -123,14 +120,6 @@ static void bring_ends(const fibrad_heat *heat, uint32_t owner, const fibrad_hea
         bring_strands(pencil, &ends, false, false);
 }
 
-/* The number of beams that a pencil stands for. */
-static double beams_of(const fibrad_heat_pencil *pencil) {
-    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
-    uint32_t beams = 0;
-    for (uint32_t k = 0; k < pencil->bundles; k++) beams += bundle[k].count;
-    return (double)pencil->weight * beams;
-}
-
 /* The reflectivity of the other end of a pencil. */
 static double reflectivity_of(const fibrad_heat *heat, const fibrad_heat_pencil *pencil) {
     return fibrad_heat_sent_back(heat, pencil->body < heat->rows ? fibrad_heat_body_of_row(heat, pencil->body)
@@ -167,7 +156,7 @@ static void note_pencil(const fibrad_heat *heat, uint32_t row, const fibrad_heat
     if (body >= heat->spheres) return;
     if (other) heat->samples.seen[body].escaping += escaping_flow(heat, row, pencil);
     if (row != body) return;
-    const double beams = beams_of(pencil);
+    const double beams = fibrad_heat_beams_of(pencil);
     heat->samples.seen[body].reflected[other] += reflectivity_of(heat, pencil) * beams;
     if (pencil->body < heat->spheres) note_sphere(&heat->samples.seen[body], pencil, beams);
 }
@@ -222,7 +211,7 @@ static void sweep_rows(const fibrad_heat *heat, uint32_t part, struct gathering 
                    end = fibrad_heat_part_begin(heat, n, part + 1);
     for (uint32_t k = begin; k < end; k++) {
         fibrad_zero(gathered_by(heat, place[k], g), heat->config.patches * sizeof(double));
-        heat->samples.seen[place[k]] = (fibrad_heat_seen){{0, 0}, 0, 0, 0, 0};
+        heat->samples.seen[place[k]] = (fibrad_heat_seen){{0, 0}, 0, 0, 0, 0, 0};
     }
     for (uint32_t row = n; row < heat->rows; row++)
         if (heat->part[row] == part)
@@ -238,12 +227,31 @@ static void sweep_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, st
     const uint32_t others = fibrad_heat_others(heat);
     for (uint32_t k = begin; k < end; k++) {
         const fibrad_heat_ray ray = heat->ray[k];
-        if (ray.area == 0) continue;
+        if (ray.area == 0 || ray.to < others) continue;
         const double area = g->back ? fibrad_heat_ray_area(heat, &ray) : ray.area;
         const double flow = g->areas ? area : area * (source[ray.to] - source[ray.from]);
         g->walls[ray.from - others] += flow;
         g->walls[ray.to - others] += g->areas ? flow : -flow;
         if (k % 64 == 63) set_aside(heat, g->walls, g->away);
+    }
+}
+
+/* Sweeps the rays that meet spheres of a part. In the sweep for the error, spheres take the difference between even
+ * and odd rays. */
+static void sweep_met(const fibrad_heat *heat, uint32_t part, struct gathering *g) {
+    const double *source = heat->solution.source;
+    for (uint32_t l = heat->first_met[part]; l < heat->first_met[part + 1]; l++) {
+        const uint32_t k = heat->met[l];
+        const fibrad_heat_ray ray = heat->ray[k];
+        const double area = g->back ? fibrad_heat_ray_area(heat, &ray) : ray.area;
+        const double flow = g->areas ? area : area * (source[ray.to] - source[ray.from]);
+        if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
+            heat->samples.seen[fibrad_heat_sphere_of(heat, ray.to)].rays += flow * flow;
+            heat->solution.gathered[ray.to] -= FIBRAD_HEAT_RAYS_WEIGHT * (k % 2 ? -flow : flow);
+            continue;
+        }
+        g->walls[ray.from - fibrad_heat_others(heat)] += flow;
+        heat->solution.gathered[ray.to] += g->areas ? flow : -flow;
     }
 }
 
@@ -257,6 +265,7 @@ static void sweep_part(fibrad_heat *heat, uint32_t part) {
     for (uint32_t a = 0; a < FIBRAD_HEAT_PATCHES_MAX; a++) g.one[a] = 1;
     fibrad_zero(g.walls, of_walls * sizeof *g.walls);
     sweep_rows(heat, part, &g);
+    sweep_met(heat, part, &g);
     if (heat->solution.phase == FIBRAD_HEAT_CHECK && heat->sources.conducts && !heat->solution.steps)
         fibrad_heat_find_extremes(heat, fibrad_heat_part_begin(heat, heat->spheres, part),
                                   fibrad_heat_part_begin(heat, heat->spheres, part + 1), &heat->near[part]);

@@ -7,6 +7,13 @@
 /* Chooses the sequence of spheres in sweeps, and the part of each row. */
 void fibrad_heat_divide(fibrad_heat *heat);
 
+/* Lists rays of meshes that meet spheres by the part of the sphere, and closes the rows of these spheres. All beams and
+ * rays are followed. */
+void fibrad_heat_link_rays(fibrad_heat *heat);
+
+/* The sphere of a patch. */
+uint32_t fibrad_heat_sphere_of(const fibrad_heat *heat, uint32_t patch);
+
 /* The net flow to each patch after all parts are swept: [patches]. After the sweep FIBRAD_HEAT_AREA: areas. */
 const double *fibrad_heat_gathered(fibrad_heat *heat);
 

@@ -1,8 +1,10 @@
 /* scatter.c - rays of light: what walls take, and where reflected light arrives. SPDX-License-Identifier: MIT
  *
- * A ray comes from outside. It ends on the first sphere or wall that it meets, and a second ray leaves from there by
- * the cosine law. So light that falls on a part of a patch is reflected from where it falls. All light that a body
- * reflects is known. The rays that leave the body share it out. Patches that are lit wholly reflect without rays. */
+ * A ray comes from outside. It meets a sphere or wall, and goes on from there by the cosine law. So light that falls on
+ * a part of a patch is reflected from where it falls. All light that a body reflects first is known. The rays that
+ * leave the body share it out. Where few rays meet a body, patches that are lit wholly reflect without rays. Rays of
+ * narrow light go on for some hits, as long as there are many of them on a body. */
+#include "base/constants.h"
 #include "base/random.h"
 #include "base/vector.h"
 #include "patches/subdivision.h"
@@ -18,7 +20,10 @@
 #define SCATTER_BEAMS   12u /* rays of a light, over the beams of a sphere */
 #define SCATTER_LIT     16u /* beams of a sphere over the rays for each sphere in the light */
 #define SCATTER_WHOLE   .9  /* a patch that gets more than this part of what may fall on it is lit wholly */
-#define SCATTER_PATCHES 4.0 /* patches of a four, for which fibrad_heat_fine_point gives areas */
+#define SCATTER_NARROW  4.0 /* discs of the largest sphere, of which light is narrow */
+#define SCATTER_RANDOM  .36 /* even rays for which a random one stands */
+#define SCATTER_SEED    UINT64_C(0x4c49474854) /* of random reflections */
+#define SCATTER_PATCHES 4.0                    /* patches of a four, for which fibrad_heat_fine_point gives areas */
 
 uint32_t fibrad_heat_light_rays(const fibrad_heat *heat, const double *hits) {
     uint64_t lit = 0;
@@ -73,47 +78,56 @@ static uint32_t patch_met(const fibrad_heat *heat, const double origin[3], const
                                       : fibrad_heat_ends(heat, origin, w, hit->side, hit->distance);
 }
 
-/* Reflects a ray at a place. x: two numbers in [0, 1). Returns the patch that it meets. FIBRAD_NONE: a side that
- * belongs to no wall; *back is its triangle. */
-static uint32_t reflect_ray(const fibrad_heat *heat, const light_place *from, const double x[2], uint32_t *back) {
-    const fibrad_scene *scene = heat->scene;
-    double w[3];
-    fibrad_hit hit = {0};
+/* Reflects a ray at a place. x: two numbers in [0, 1). */
+static void reflect_ray(const fibrad_scene *scene, const light_place *from, const double x[2], double w[3],
+                        fibrad_hit *hit) {
     fibrad_heat_direction(x, from->normal, w);
+    *hit = (fibrad_hit){0};
     if (from->sphere != FIBRAD_NONE)
-        FIBRAD_VERSION_OF(fibrad_trace, scene->facts.isa)(scene, NULL, from->sphere, from->normal, w, &hit);
+        FIBRAD_VERSION_OF(fibrad_trace, scene->facts.isa)(scene, NULL, from->sphere, from->normal, w, hit);
     else
-        FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, NULL, from->at, w, from->except, &hit);
-    const uint32_t patch = patch_met(heat, from->at, w, &hit);
-    if (patch == FIBRAD_NONE) *back = fibrad_side_number(&scene->mesh, hit.side);
-    return patch;
+        FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, NULL, from->at, w, from->except, hit);
 }
 
-/* Follows ray n of a light in one of its directions. FIBRAD_E_BACK: *back is the triangle whose side belongs to no
- * wall. */
+/* How many hits of a ray are followed. */
+static uint32_t hits_of(const fibrad_heat *heat, const fibrad_footprint *f) {
+    const double r = heat->scene->facts.radius_max;
+    return fibrad_footprint_area(f) <= SCATTER_NARROW * FIBRAD_PI * r * r ? FIBRAD_LIGHT_HITS : 2;
+}
+
+/* Follows ray n of a light in one of its directions. The first two hits are evenly spread, the others random.
+ * FIBRAD_E_BACK: *back is the triangle whose side belongs to no wall. */
 static int follow_light(const fibrad_heat *heat, const fibrad_footprint *f, uint32_t n, fibrad_light_ray *ray,
                         uint32_t *back) {
-    const double d[3] = {0 - f->frame[6], 0 - f->frame[7], 0 - f->frame[8]};
+    double d[3] = {0 - f->frame[6], 0 - f->frame[7], 0 - f->frame[8]};
     double x[4], uv[2], at[3];
     uint32_t piece;
     fibrad_hit hit = {0};
     light_place place;
-    *ray = (fibrad_light_ray){FIBRAD_NONE, FIBRAD_NONE, FIBRAD_ESCAPED};
+    *ray = (fibrad_light_ray){.slot = FIBRAD_ESCAPED};
+    for (uint32_t h = 0; h < FIBRAD_LIGHT_HITS; h++) ray->patch[h] = FIBRAD_NONE;
     fibrad_heat_even_point(heat, 0, n, x);
     for (int a = 0; a < 2; a++) uv[a] = f->bound_low[a] + x[a] * (f->bound_high[a] - f->bound_low[a]);
     if (!fibrad_footprint_lights(f, uv, &piece)) return FIBRAD_OK;
     fibrad_footprint_enters(f, piece, uv, at);
     FIBRAD_VERSION_OF(fibrad_trace_point, heat->scene->facts.isa)(heat->scene, NULL, at, d, FIBRAD_NO_SIDE, &hit);
     ray->slot = f->piece[piece].slot;
-    ray->first = ray->second = patch_met(heat, at, d, &hit);
-    if (ray->first == FIBRAD_NONE)
-        *back = fibrad_side_number(&heat->scene->mesh, hit.side);
-    else if (find_light_place(heat, at, d, &hit, &place))
-        ray->second = reflect_ray(heat, &place, x + 2, back);
-    return ray->second != FIBRAD_NONE ? FIBRAD_OK : FIBRAD_E_BACK;
+    fibrad_random random = fibrad_random_start(SCATTER_SEED, n);
+    for (uint32_t h = 0, hits = hits_of(heat, f); h < hits; h++) {
+        ray->patch[h] = patch_met(heat, at, d, &hit);
+        if (ray->patch[h] == FIBRAD_NONE) {
+            *back = fibrad_side_number(&heat->scene->mesh, hit.side);
+            return FIBRAD_E_BACK;
+        }
+        if (h + 1 == hits || !find_light_place(heat, at, d, &hit, &place)) break;
+        for (int a = 2; a < 4 && h > 0; a++) x[a] = fibrad_random_next(&random);
+        reflect_ray(heat->scene, &place, x + 2, d, &hit);
+        fibrad_copy(at, place.at, sizeof at);
+    }
+    return FIBRAD_OK;
 }
 
-uint32_t fibrad_heat_scatter_tasks(uint32_t rays) { return rays / SCATTER_TASK; }
+uint32_t fibrad_heat_scatter_tasks(uint32_t rays) { return rays / SCATTER_TASK + (rays % SCATTER_TASK > 0); }
 
 int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t rays,
                         uint32_t task, fibrad_light_ray *ray) {
@@ -126,12 +140,23 @@ int fibrad_heat_scatter(const fibrad_heat *heat, fibrad_work *work, const fibrad
     if (status != FIBRAD_OK) return status;
     fibrad_footprint *f = fibrad_light_footprint(space);
     const uint32_t begin = task * SCATTER_TASK, count = fibrad_light_count(light);
-    for (uint32_t n = begin, made = FIBRAD_NONE; n < begin + SCATTER_TASK && status == FIBRAD_OK; n++) {
+    const uint32_t end = rays - begin < SCATTER_TASK ? rays : begin + SCATTER_TASK;
+    for (uint32_t n = begin, made = FIBRAD_NONE; n < end && status == FIBRAD_OK; n++) {
         const uint32_t k = (uint32_t)((uint64_t)n * count / rays);
         if (k != made) fibrad_footprint_make(f, heat->scene, light, made = k);
         status = follow_light(heat, f, n, &ray[n], &work->triangle);
     }
     return status;
+}
+
+/* Whether rays name patches and slots that there are. */
+static bool are_rays(const fibrad_heat *heat, const fibrad_light_ray *ray, uint32_t rays) {
+    for (uint32_t n = 0; n < rays; n++) {
+        if (ray == NULL || ray[n].slot > FIBRAD_ESCAPED) return false;
+        for (uint32_t h = 0; h < FIBRAD_LIGHT_HITS && ray[n].patch[h] != FIBRAD_NONE; h++)
+            if (ray[n].patch[h] >= heat->patches) return false;
+    }
+    return true;
 }
 
 /* Counts of rays that meet no sphere. Rays that end on triangles are counted by the slot at which they would end
@@ -207,17 +232,17 @@ static double spread_on_walls(const fibrad_heat *heat, const ray_counts *counts,
 int fibrad_heat_shine_walls(const fibrad_heat *heat, fibrad_work *work, const fibrad_light_ray *ray, uint32_t rays,
                             fibrad_light_ends *ends, double *hits) {
     fibrad_workspace *space;
-    if (heat == NULL || work == NULL || (rays > 0 && ray == NULL) || ends == NULL || hits == NULL)
-        return FIBRAD_E_ARGUMENT;
+    if (heat == NULL || work == NULL || ends == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
+    if (!are_rays(heat, ray, rays)) return FIBRAD_E_ARGUMENT;
     const size_t room = size_of_counts(heat);
     const int status = fibrad_light_open(heat->scene, work, room, &space);
     if (status != FIBRAD_OK) return status;
     ray_counts counts = counts_of(heat, fibrad_light_scratch(space));
     fibrad_zero(counts.patch, room);
     for (uint32_t n = 0; n < rays; n++)
-        if (ray[n].first != FIBRAD_NONE && ray[n].first >= counts.others)
-            add_ray(heat, &counts, ray[n].slot, ray[n].first);
+        if (ray[n].patch[0] != FIBRAD_NONE && ray[n].patch[0] >= counts.others)
+            add_ray(heat, &counts, ray[n].slot, ray[n].patch[0]);
     for (uint32_t b = 0; b < heat->given_walls; b++)
         if (heat->slot[b] < FIBRAD_WALLS)
             ends->wall[b] = spread_on_walls(heat, &counts, heat->slot[b], fibrad_max(0, ends->wall[b]), hits, ends);
@@ -232,11 +257,13 @@ typedef struct reflection {
     const double *frame; /* of the light */
     const double *first; /* [patches], first hits */
     double flux;
-    double *count;   /* [patches], rays that meet a patch first; -1: none is needed */
-    double *sent;    /* [patches], what each of these rays carries on */
+    double *count;   /* [patches], rays of a hit that meet a patch; -1: none is needed */
+    double *came;    /* [patches], what these rays bring */
     double *squares; /* [patches], of what arrives by rays */
-    double *came;    /* [patches], what arrives by rays */
+    double *left;    /* [patches], what arrives by rays and patches reflect */
     double *falls;   /* [patches of meshes], what light of flux 1 brings if nothing is before them */
+    double *sent[FIBRAD_LIGHT_HITS - 1]; /* [patches]: what each ray carries on from its first hit, and the fraction of
+                                           it that it carries on from the next ones */
 } reflection;
 
 /* Finds what light of flux 1 brings to the patches of meshes. */
@@ -277,39 +304,94 @@ static bool is_lit_wholly(const reflection *r, uint32_t body, uint32_t begin, ui
     return whole;
 }
 
+static double beams_of_patch(const fibrad_heat *heat) {
+    return 2.0 * heat->beams / (heat->config.patches * heat->thin);
+}
+
+/* Whether as many rays meet a body as beams would leave its patches there. Rays are then the better ones. came: what
+ * falls on patches. ray: what a ray counts. */
+static bool has_dense_rays(const reflection *r, uint32_t body, const double *came, double ray) {
+    double rays = 0, power = 0, squares = 0;
+    for (uint32_t a = r->heat->first[body]; a < r->heat->first[body + 1]; a++)
+        rays += ray * r->count[a], power += came[a], squares += came[a] * came[a];
+    return power > 0 && rays * squares >= beams_of_patch(r->heat) * power * power;
+}
+
 /* Divides the light on a body into that on patches which are lit wholly, and the rest, which rays reflect. Sets what
  * each ray carries on; the count of patches without rays is set below 1. If a body has no rays, its patches reflect
  * all.
  */
 static void divide_light(const reflection *r, uint32_t body, double absorptivity, const fibrad_light_hits *hits) {
     const uint32_t begin = r->heat->first[body], end = r->heat->first[body + 1];
+    const bool dense = has_dense_rays(r, body, r->first, 1);
     double rays = 0, power = 0;
     for (uint32_t a = begin, next; a < end; a = next) {
         next = end - a > FIBRAD_HEAT_FOUR ? a + FIBRAD_HEAT_FOUR : end;
-        const bool whole = is_lit_wholly(r, body, a, next);
+        const bool whole = !dense && is_lit_wholly(r, body, a, next);
         for (uint32_t k = a; k < next && whole; k++) r->count[k] = -1;
         for (uint32_t k = a; k < next && !whole; k++) rays += r->count[k], power += r->first[k];
     }
     for (uint32_t a = begin; a < end; a++) {
         if (r->count[a] < 0 || rays == 0) hits->light[a] += r->first[a];
         if (r->count[a] <= 0) continue;
-        r->sent[a] = power / rays * (1 - absorptivity);
+        r->sent[0][a] = power / rays * (1 - absorptivity);
         hits->spots[a] += r->count[a] * (power / rays);
     }
 }
 
-/* The same for a wall and what lies beyond its patches. */
-static void divide_light_of_wall(const reflection *r, uint32_t slot, double absorptivity,
-                                 const fibrad_light_hits *hits) {
-    divide_light(r, fibrad_heat_body(r->heat, slot), absorptivity, hits);
-    if (slot < FIBRAD_WALLS) divide_light(r, fibrad_heat_beyond(r->heat, slot), absorptivity, hits);
+/* Has rays carry on what they have brought to a body with hit h. Patches reflect it if the rays are few. */
+static void carry_on(const reflection *r, uint32_t body, uint32_t h, double absorptivity,
+                     const fibrad_light_hits *hits) {
+    const bool dense = has_dense_rays(r, body, r->came, SCATTER_RANDOM);
+    for (uint32_t a = r->heat->first[body]; a < r->heat->first[body + 1]; a++) {
+        if (dense) r->sent[h][a] = 1 - absorptivity;
+        *(dense ? &hits->spots[a] : &r->left[a]) += r->came[a];
+    }
+}
+
+/* Reflects what has come to a body with hit h. */
+static void reflect_on(const reflection *r, uint32_t body, uint32_t h, double absorptivity,
+                       const fibrad_light_hits *hits) {
+    if (h == 0)
+        divide_light(r, body, absorptivity, hits);
+    else
+        carry_on(r, body, h, absorptivity, hits);
+}
+
+/* What a ray brings with hit h > 0. */
+static double brought_by(const reflection *r, const fibrad_light_ray *ray, uint32_t h) {
+    double power = ray->patch[0] == FIBRAD_NONE || ray->patch[h] == FIBRAD_NONE ? 0 : r->sent[0][ray->patch[0]];
+    for (uint32_t k = 1; k < h && power > 0; k++) power *= r->sent[k][ray->patch[k]];
+    return power;
+}
+
+/* Whether a ray has no hit after hit h. */
+static bool ends_with(const fibrad_light_ray *ray, uint32_t h) {
+    return h + 1 == FIBRAD_LIGHT_HITS || ray->patch[h + 1] == FIBRAD_NONE;
+}
+
+/* Finds what rays bring with hit h. Patches reflect what comes by rays that end there. */
+static void bring_light(const reflection *r, const fibrad_light_ray *ray, uint32_t rays, uint32_t h) {
+    const size_t bytes = r->heat->patches * sizeof *r->came;
+    fibrad_zero(r->count, bytes);
+    fibrad_zero(r->came, bytes);
+    for (uint32_t n = 0; n < rays; n++) {
+        const uint32_t patch = ray[n].patch[h];
+        const double power = h == 0 ? 0 : brought_by(r, &ray[n], h);
+        if (patch == FIBRAD_NONE || (h > 0 && !(power > 0))) continue;
+        r->squares[patch] += power * power / (h > 1 ? SCATTER_RANDOM : 1);
+        if (h > 0 && ends_with(&ray[n], h))
+            r->left[patch] += power;
+        else
+            r->count[patch]++, r->came[patch] += power;
+    }
 }
 
 /* Adds the squares of a body. What its patches reflect leaves each patch by a few beams. */
 static void add_squares_of(const reflection *r, uint32_t body, double absorptivity, double *squares, double *beams) {
-    const double few = 2.0 * r->heat->beams / (r->heat->config.patches * r->heat->thin);
+    const double few = beams_of_patch(r->heat);
     for (uint32_t a = r->heat->first[body]; a < r->heat->first[body + 1]; a++) {
-        const double reflected = (1 - absorptivity) * r->came[a];
+        const double reflected = (1 - absorptivity) * r->left[a];
         *squares += r->squares[a], *beams += reflected * reflected / few;
     }
 }
@@ -335,39 +417,41 @@ int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad
                         const fibrad_light_ray *ray, uint32_t rays, const double *absorptivity,
                         const double *wall_absorptivity, const fibrad_light_hits *hits) {
     fibrad_workspace *space;
-    if (heat == NULL || work == NULL || (rays > 0 && ray == NULL) || hits == NULL) return FIBRAD_E_ARGUMENT;
+    if (heat == NULL || work == NULL || hits == NULL) return FIBRAD_E_ARGUMENT;
     if ((heat->spheres > 0 && absorptivity == NULL) || (heat->given_walls > 0 && wall_absorptivity == NULL))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    const size_t patches = heat->patches, bytes = (4 * patches + counts_of(heat, NULL).of_meshes) * sizeof(double);
+    if (!are_rays(heat, ray, rays)) return FIBRAD_E_ARGUMENT;
+    const size_t patches = heat->patches;
+    const size_t bytes = ((3 + FIBRAD_LIGHT_HITS) * patches + counts_of(heat, NULL).of_meshes) * sizeof(double);
     int status = fibrad_light_check(heat->scene, light, NULL);
     if (status == FIBRAD_OK) status = fibrad_light_open(heat->scene, work, bytes, &space);
     if (status != FIBRAD_OK) return status;
     fibrad_footprint *f = fibrad_light_footprint(space);
     double *room = fibrad_light_scratch(space);
-    const reflection r = {.heat = heat,
-                          .frame = f->frame,
-                          .first = hits->first,
-                          .flux = light->flux,
-                          .count = room,
-                          .sent = room + patches,
-                          .squares = room + 2 * patches,
-                          .came = room + 3 * patches,
-                          .falls = room + 4 * patches};
+    reflection r = {.heat = heat,
+                    .frame = f->frame,
+                    .first = hits->first,
+                    .flux = light->flux,
+                    .count = room,
+                    .came = room + patches,
+                    .squares = room + 2 * patches,
+                    .left = room + 3 * patches,
+                    .falls = room + (3 + FIBRAD_LIGHT_HITS) * patches};
+    for (uint32_t h = 0; h + 1 < FIBRAD_LIGHT_HITS; h++) r.sent[h] = room + (4 + h) * patches;
     fibrad_zero(room, bytes);
     fibrad_footprint_make(f, heat->scene, light, 0);
     fall_on_meshes(&r);
-    for (uint32_t n = 0; n < rays; n++)
-        if (ray[n].first != FIBRAD_NONE) r.count[ray[n].first]++;
-    for (uint32_t b = 0; b < heat->spheres; b++) divide_light(&r, b, absorptivity[heat->order[b]], hits);
-    for (uint32_t k = 0; k < heat->given_walls; k++)
-        divide_light_of_wall(&r, heat->slot[k], wall_absorptivity[k], hits);
-    for (uint32_t n = 0; n < rays; n++) {
-        if (ray[n].first == FIBRAD_NONE || !(r.count[ray[n].first] > 0)) continue;
-        const double sent = r.sent[ray[n].first];
-        r.came[ray[n].second] += sent, r.squares[ray[n].second] += sent * sent;
+    for (uint32_t h = 0; h < FIBRAD_LIGHT_HITS; h++) {
+        bring_light(&r, ray, rays, h);
+        for (uint32_t b = 0; b < heat->spheres; b++) reflect_on(&r, b, h, absorptivity[heat->order[b]], hits);
+        for (uint32_t k = 0; k < heat->given_walls; k++) {
+            const uint32_t slot = heat->slot[k];
+            reflect_on(&r, fibrad_heat_body(heat, slot), h, wall_absorptivity[k], hits);
+            if (slot < FIBRAD_WALLS) reflect_on(&r, fibrad_heat_beyond(heat, slot), h, wall_absorptivity[k], hits);
+        }
     }
-    for (uint32_t a = 0; a < heat->patches; a++) hits->light[a] += r.came[a];
+    for (size_t a = 0; a < patches; a++) hits->light[a] += r.left[a];
     add_squares(&r, absorptivity, wall_absorptivity, hits->squares);
     return FIBRAD_OK;
 }

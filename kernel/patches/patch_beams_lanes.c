@@ -2,6 +2,7 @@
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/random.h"
+#include "base/vector.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
@@ -57,7 +58,7 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
 /* Counts a beam of window k that meets a fine patch. Returns the beam. */
 static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                   uint32_t fine) {
-    const uint32_t row = heat->division.four[fine / FIBRAD_HEAT_FOUR].row;
+    const uint32_t row = fibrad_heat_row_of_fine(heat, fine);
     const uint32_t entry = fibrad_entries_of(&work->entries, row);
     fibrad_entries_add(&work->entries, entry, k, 1);
     return (fibrad_heat_beam){entry, from,
@@ -319,6 +320,24 @@ static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t p
     return fibrad_heat_keep(heat, work, place, count);
 }
 
+/* The area that a ray stands for that ends in a row. 0: it does not count. */
+static double area_to_row(const fibrad_heat *heat, uint32_t slot, uint32_t row) {
+    const double density = slot < FIBRAD_WALLS ? 0 : fibrad_heat_sees(heat, slot - FIBRAD_MESHES, row);
+    return density > 0 ? 1 / (density + heat->density[row]) : 0;
+}
+
+/* Ends a ray of a mesh at the sphere that it meets. A ray that starts inside the sphere ends there if the side of the
+ * mesh faces the centre: beams from the cap behind the mesh arrive at this side. */
+static void end_at_sphere(const fibrad_heat *heat, uint32_t slot, uint32_t side, const fibrad_hit *hit,
+                          fibrad_heat_ray *ray) {
+    double n[3];
+    fibrad_mesh_normal(&heat->scene->mesh, side, n);
+    if (hit->distance == 0 && !(fibrad_dot(n, hit->centre) > 0)) return;
+    ray->to = fibrad_heat_patch_at(heat, hit->sphere, hit->normal);
+    const uint32_t fine = fibrad_heat_fine_number(heat, hit->sphere, ray->to);
+    ray->area = area_to_row(heat, slot, fine != FIBRAD_NONE ? fibrad_heat_row_of_fine(heat, fine) : hit->sphere);
+}
+
 /* Follows ray k of the wall of a slot. ray: out: the patches that it connects. */
 static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t slot, uint32_t k, double density,
                       fibrad_heat_ray *ray) {
@@ -331,17 +350,22 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     if (!starts) return FIBRAD_OK;
     LANED(fibrad_trace_point)
     (heat->scene, NULL, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
-    if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
+    if (hit.sphere != FIBRAD_NONE && side == FIBRAD_NO_SIDE) return FIBRAD_OK;
     ray->from = slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin, true)
                                     : fibrad_heat_mesh_patch(heat, side, origin);
     if (fibrad_heat_fine_of(heat, ray->from) != FIBRAD_NONE) return FIBRAD_OK; /* these have rays of their own */
+    if (hit.sphere != FIBRAD_NONE) {
+        end_at_sphere(heat, slot, side, &hit, ray);
+        return FIBRAD_OK;
+    }
     ray->to = fibrad_heat_ends(heat, origin, w, hit.side, hit.distance);
     if (ray->to == FIBRAD_NONE) {
         work->back = fibrad_side_number(&heat->scene->mesh, hit.side);
         return FIBRAD_E_BACK;
     }
-    if (fibrad_heat_fine_of(heat, ray->to) != FIBRAD_NONE) return FIBRAD_OK;
-    ray->area = 1 / (density + fibrad_heat_wall_density(heat, ray->to));
+    const uint32_t fine = fibrad_heat_fine_of(heat, ray->to);
+    ray->area = fine != FIBRAD_NONE ? area_to_row(heat, slot, fibrad_heat_row_of_fine(heat, fine))
+                                    : 1 / (density + fibrad_heat_wall_density(heat, ray->to));
     return FIBRAD_OK;
 }
 

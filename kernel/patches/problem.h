@@ -86,8 +86,9 @@ typedef struct fibrad_heat_rays {
     uint32_t first, count;
 } fibrad_heat_rays;
 
-/* A ray from a patch of a wall to a patch of a wall or to the surroundings. `area` [L^2] is the area that the ray
- * stands for. It is 0 if the ray meets a sphere or starts outside the container. */
+/* A ray from a patch of a wall to a patch of a wall or to the surroundings, or from a mesh to a patch of a sphere.
+ * `area` [L^2] is the area that the ray stands for. It is 0 if the ray starts outside the container, or if it meets a
+ * sphere whose beams alone tell what both exchange (fibrad_heat_sees). */
 typedef struct fibrad_heat_ray {
     uint32_t from, to;
     double area;
@@ -98,6 +99,7 @@ typedef struct fibrad_heat_seen {
     double reflected[2]; /* beams times reflectivity of what they meet: spheres, walls */
     double escaping;     /* power to the surroundings by even directions minus that by odd directions */
     double met;          /* beams that meet spheres */
+    double rays;         /* squares of powers by rays of meshes */
     double squares,
         one_parity; /* squares of even minus odd beams to each sphere; those of spheres met by one kind alone */
 } fibrad_heat_seen;
@@ -242,6 +244,7 @@ struct fibrad_heat {
     double *density;                     /* 1/L^2, [rows], beams per area of the surface */
     uint16_t *leave;                     /* [beams], patch that a beam leaves, the same for all spheres */
     fibrad_heat_ray *ray;                /* [rays] */
+    uint32_t *met, *first_met;           /* [rays], rays to spheres by part; [parts + 2] */
     fibrad_heat_rays sent[FIBRAD_SLOTS]; /* by slot */
     fibrad_sobol sobol;                  /* of rays from meshes */
     fibrad_heat_pencils pencils;
@@ -381,6 +384,44 @@ static inline uint32_t fibrad_heat_first_of_row(const fibrad_heat *heat, uint32_
 }
 static inline uint32_t fibrad_heat_body_of_row(const fibrad_heat *heat, uint32_t row) {
     return row < heat->spheres ? row : heat->division.fine[row - heat->spheres].body;
+}
+
+/* Few beams of a large sphere meet a small mesh. So the rays of the mesh that meet the sphere count as well, if there
+ * are enough of them per area. Near a mesh, beams are spread more evenly than rays, so that one is worth EVEN rays.
+ * Beams to a mesh farther than this many radii come in bundles of a few directions. */
+#define FIBRAD_HEAT_EVEN 16.0
+#define FIBRAD_HEAT_FAR  4.0
+
+/* Parts of a sphere behind a mesh exchange with the side of the mesh before them. There rays do not tell what beams
+ * do. So rays do not count if the mesh comes this near to the centre, in radii. */
+#define FIBRAD_HEAT_PIERCED .99
+
+/* Rays per area of mesh m that tell what it exchanges with a row, as beams of the row do. 0: these alone tell. */
+static inline double fibrad_heat_sees(const fibrad_heat *heat, uint32_t m, uint32_t row) {
+    const uint32_t owner = fibrad_heat_body_of_row(heat, row);
+    const double density = heat->sent[FIBRAD_MESHES + m].density;
+    const double clear = owner < heat->spheres ? heat->scene->clear[owner] : 1;
+    const double least = clear > FIBRAD_HEAT_FAR ? heat->density[row] : FIBRAD_HEAT_EVEN * heat->density[row];
+    return density > least && clear >= FIBRAD_HEAT_PIERCED ? density : 0;
+}
+
+/* The same for what the pencils of the row name `other`, which is no row. */
+static inline double fibrad_heat_seeing(const fibrad_heat *heat, uint32_t other, uint32_t row) {
+    const uint32_t b = (other - heat->rows) % FIBRAD_HEAT_OTHERS;
+    return b >= FIBRAD_WALLS && b - FIBRAD_WALLS < heat->meshes ? fibrad_heat_sees(heat, b - FIBRAD_WALLS, row) : 0;
+}
+
+/* The number of beams that a pencil stands for. */
+static inline double fibrad_heat_beams_of(const fibrad_heat_pencil *pencil) {
+    const fibrad_heat_bundle *bundle = fibrad_heat_bundles(pencil);
+    uint32_t beams = 0;
+    for (uint32_t k = 0; k < pencil->bundles; k++) beams += bundle[k].count;
+    return (double)pencil->weight * beams;
+}
+
+/* The row of a fine patch by its number among all fine patches. */
+static inline uint32_t fibrad_heat_row_of_fine(const fibrad_heat *heat, uint32_t fine) {
+    return heat->division.four[fine / FIBRAD_HEAT_FOUR].row;
 }
 
 /* The patch of a body at u, v, 0 to 1, of one of its own fours, fine or not. patch: the own patch there. */

@@ -17,6 +17,7 @@
 #define OUTSIDE        4.0  /* patches of meshes, also outside the walls, may be this many times the limit */
 #define RAYS_PER_PATCH 8.0
 #define RAYS_PER_BEAM  6.0
+#define SHARE_OF_MESH  4.0 /* a mesh sends at least one ray of so many, if there are not more meshes */
 
 /* The longest finite edge of the container; 1 if there is none. */
 static double container_size(const fibrad_scene *scene) {
@@ -123,8 +124,11 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
         wall->squares[1] = squares(wall->size[1], square);
         send_rays(heat, k, fibrad_heat_wall_area(heat, k), density);
     }
-    for (uint32_t m = 0; m < heat->meshes; m++)
-        send_rays(heat, FIBRAD_MESHES + m, fibrad_mesh_area(&scene->mesh, m), density);
+    for (uint32_t m = 0; m < heat->meshes; m++) {
+        const double own = fibrad_mesh_area(&scene->mesh, m);
+        send_rays(heat, FIBRAD_MESHES + m, own,
+                  fibrad_max(density, own > 0 ? rays / fibrad_max(SHARE_OF_MESH, heat->meshes) / own : 0));
+    }
 }
 
 void fibrad_heat_cut_meshes(fibrad_heat *heat) {

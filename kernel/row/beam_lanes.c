@@ -170,9 +170,7 @@ static double open_error_of(const beam_windows *windows) {
     return fibrad_sqrt(windows->roughness / (6.0 * windows->compared * windows->count));
 }
 
-static void add_open(fibrad_workspace *work, uint32_t k, double rest, beam_sums *sums) {
-    sums->open[k % 2] += fibrad_on_grid(rest, work->entries.grid);
-}
+static void add_open(uint32_t k, double rest, beam_sums *sums) { sums->open[k % 2] += rest; }
 
 /* Computes window k and adds it to all sums. False: there was no room for all discs. */
 static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
@@ -180,11 +178,10 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     static const double centre[3] = {0, 0, 0};
     fibrad_points *points = &windows->points;
     double frame[9], whole;
-    work->entries.grid = fibrad_grid_of(set->middle[1], k);
     work->entries.end = set->ends && (k == 0 || k == windows->count - 1);
     const double rest = compute_window(work, windows, k, frame, &whole);
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
-    sums->whole[k % 2] += fibrad_on_grid(whole, work->entries.grid);
+    sums->whole[k % 2] += whole;
     LANED(take_segments)(work, frame, k, rest > 0);
     if (windows->chords == 0) compare_window(windows, k, work->bare / whole);
     const bool meets = work->met != NULL && work->met->any;
@@ -193,12 +190,12 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     (work, frame, meets && points->count == 0 ? &work->met->points : points, k, set, rest, whole);
     else if (work->cut && rest != 0 && fibrad_work_met(work, centre, frame + 6, work->reach) == FIBRAD_BEYOND)
         fibrad_work_slot(work, FIBRAD_BEYOND, rest);
-    else add_open(work, k, rest, sums);
+    else add_open(k, rest, sums);
     if (!windows->both) return true;
     const uint32_t back = windows->count + k;
     const double rest_back = compute_window(work, windows, back, frame, &whole);
     LANED(fibrad_walls_share)(work, frame, points, back, set, rest_back, whole);
-    add_open(work, k, rest, sums); /* what walls get in all, see keep_open */
+    add_open(k, rest, sums); /* what walls get in all, see keep_open */
     return work->disc.count <= work->disc.capacity && !work->areas.overflow;
 }
 
@@ -273,15 +270,10 @@ static void begin_row(fibrad_workspace *work, const fibrad_scene *scene, uint32_
 /* What the windows of a row have in common. */
 static fibrad_window_set set_of_windows(const beam_windows *windows) {
     const bool masked = windows->chords > 0;
-    const double square = 32.0 * windows->words * windows->chords; /* points of masks in the square about a window */
-    const double size = masked ? FIBRAD_PI / 4 * square : windows->size, most = masked ? square : windows->size;
-    const uint32_t directions = windows->count << windows->both;
     return (fibrad_window_set){.frame = LANED(frame_of_beam),
                                .from = windows,
-                               .directions = directions,
-                               .whole = size,
-                               .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
-                                          fibrad_grid_middle(most * most * directions)},
+                               .directions = windows->count << windows->both,
+                               .whole = masked ? FIBRAD_PI * 8 * windows->words * windows->chords : windows->size,
                                .ends = windows->lines == NULL && !masked};
 }
 
@@ -345,7 +337,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * windows.size);
     for (int half = 0; half < 2 && lines; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
     fibrad_free_pairs pairs = {.open = 1};
-    if (exact) pairs = fibrad_free_pairs_find(work, scale);
+    if (exact) pairs = fibrad_free_pairs_find(work, scale, true);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     status = fibrad_free_pairs_segments(work, &pairs);
     if (status == FIBRAD_OK) status = fibrad_entries_row(&work->entries, scene, scale, row);

@@ -362,11 +362,10 @@ static double part_through(fibrad_workspace *work, const double frame[9], const 
     return all > 0 ? free / all : 0;
 }
 
-/* Adds a window of which the fields from `k` to `slope` are set, but for the grids. */
+/* Adds a window of which the fields from `k` to `slope` are set. */
 static void share_window(fibrad_workspace *work, const double frame[9], const fibrad_points *points,
-                         const fibrad_window_set *set, fibrad_wall_window *window) {
+                         fibrad_wall_window *window) {
     fibrad_wall_room *walls = work->walls;
-    for (int n = 0; n < 3; n++) window->grid[n] = fibrad_grid_of(set->middle[n], window->k);
     fibrad_wall_window_begin(window, &walls->view, frame);
     window->band = fibrad_wall_window_band(window, &walls->view, work->turned);
     if (window->band > 0 && window->open > 0) window->through = part_through(work, frame, points, window);
@@ -389,7 +388,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
-    share_window(work, frame, points, set, &window);
+    share_window(work, frame, points, &window);
 }
 
 /* Adds to `all` of the regions what hidden windows would see. */
@@ -402,7 +401,7 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         set->frame(set->from, k, HIDDEN_POINTS, frame);
         fibrad_wall_window window = {.k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
         window.end = set->ends && (k == 0 || k == set->directions - 1);
-        share_window(work, frame, all, set, &window);
+        share_window(work, frame, all, &window);
     }
 }
 

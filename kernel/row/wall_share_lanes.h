@@ -11,9 +11,8 @@ typedef struct fibrad_window_set {
     void (*frame)(const void *from, uint32_t k, uint32_t points, double frame[9]); /* that of window k */
     const void *from;                                                              /* handed to it */
     uint32_t directions;                                                           /* how many windows there are */
-    double whole;     /* the size of a window, or about that of masks */
-    double middle[3]; /* of the grids for shares of windows, sizes and squared sizes, see sums/grid.h */
-    bool ends;        /* the first and the last window count half in differences of even and odd windows */
+    double whole; /* the size of a window, or about that of masks */
+    bool ends;    /* the first and the last window count half in differences of even and odd windows */
 } fibrad_window_set;
 
 /* Adds the open part of window k of a row, which meets no sphere, to work->walls->sums by what it meets. Lines that

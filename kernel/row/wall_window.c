@@ -105,11 +105,9 @@ bool fibrad_wall_window_has(const fibrad_wall_window *window, const fibrad_wall_
 
 void fibrad_wall_window_add(const fibrad_wall_window *window, uint32_t region, double open, double share,
                             fibrad_wall_sums *sums) {
-    const double mixed = window->open * window->hidden * share;
-    const fibrad_grid *grid = window->grid;
-    fibrad_wall_add(sums->open[region], window->k, window->end, open, grid[1]);
-    fibrad_wall_add(sums->all[region], window->k, window->end, share * window->weight, grid[0]);
-    sums->mixed[region] += fibrad_on_grid(mixed, grid[2]);
+    fibrad_wall_add(sums->open[region], window->k, window->end, open);
+    fibrad_wall_add(sums->all[region], window->k, window->end, share * window->weight);
+    sums->mixed[region] += window->open * window->hidden * share;
 }
 
 /* The part of a band of directions that rises along an axis. The weights are (1 - x^2)^2 over the half width of the

@@ -20,7 +20,6 @@ typedef struct fibrad_wall_course {
 typedef struct fibrad_wall_window {
     double frame[9];           /* axes of the window, by the axes of the cylinder */
     const double *direction;   /* by the axes x, y and z */
-    fibrad_grid grid[3];       /* for shares of windows, sizes and squared sizes */
     uint32_t k, n;             /* window k of n */
     double open, hidden;       /* open and hidden part of the window, areas or points */
     double weight;             /* size of the window over that of the others: masks differ by some points */

@@ -528,11 +528,12 @@ int fibrad_spheres_inside(const fibrad_spheres *spheres, void *memory, size_t si
                           fibrad_fault *fault) {
     if (spheres == NULL || (spheres->n > 0 && (part == NULL || other == NULL)))
         return scene_fault(FIBRAD_E_ARGUMENT, fault, 0, 0);
-    for (uint32_t i = 0; i < spheres->n; i++) part[i] = 1, other[i] = spheres->n;
     fibrad_scene *scene;
     const int status = lay_out_scene(&scene, memory, size, &(fibrad_scene_config){0}, spheres, fault);
+    if (status != FIBRAD_OK) return status;
+    for (uint32_t i = 0; i < spheres->n; i++) part[i] = 1, other[i] = spheres->n;
     inside_search search = {part, other, INSIDE_MOST * (uint64_t)spheres->n, fault};
-    return status == FIBRAD_OK ? each_overlap(scene, note_inside, &search) : status;
+    return each_overlap(scene, note_inside, &search);
 }
 
 double fibrad_scene_wall_area(const fibrad_scene *scene, uint32_t wall) {

@@ -3,7 +3,6 @@
 #define FIBRAD_SUMS_ROW_SUM_H
 
 #include "scene/scene.h"
-#include "sums/grid.h"
 
 /* What the windows have seen of each sphere so far, in the order of first sight. Each fourth direction or ray has a
  * sum of its own, from which the error is estimated. */
@@ -17,7 +16,6 @@ typedef struct fibrad_entries {
     double *exact;     /* [capacity] an exact factor, which takes the place of the sums; 0: none */
     uint64_t *key[2];  /* [capacity] scratch of the sort by columns */
     uint32_t slots, capacity, length, missed;
-    fibrad_grid grid;  /* of the present window, for all sums */
     double weight;     /* by which values are multiplied; 1 but for areas among windows by masks */
     double balance[2]; /* by which sums over even and over odd windows count in their difference; 1 if both are
                           equally many */
@@ -35,11 +33,11 @@ static inline void fibrad_entries_add(fibrad_entries *entries, uint32_t entry, u
         entries->missed++;
         return;
     }
-    area = fibrad_on_grid(area * entries->weight, entries->grid);
+    area *= entries->weight;
     if (entries->halves) k %= 2;
     double *part = entries->part[entry];
     if (entries->end) { /* so half of it is in the difference of even and odd */
-        const double quarter = fibrad_on_grid(area / 4, entries->grid);
+        const double quarter = area / 4;
         part[k % 4 ^ 1] += quarter;
         area -= quarter;
     }

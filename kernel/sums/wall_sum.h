@@ -4,7 +4,7 @@
 #define FIBRAD_SUMS_WALL_SUM_H
 
 #include "scene/surroundings.h"
-#include "sums/grid.h"
+#include "base/elementary.h"
 
 /* The walls and the cutoff in the frame of a sphere: relative to its centre, in units of its radius, by the axes
  * of the cylinder. */
@@ -44,11 +44,11 @@ typedef struct fibrad_wall_sums {
 void fibrad_wall_sums_begin(fibrad_wall_sums *sums, uint32_t windows);
 
 /* Adds the value of window k to part k mod 4 of a sum. end: the window counts half in differences between parts, as in
- * fibrad_entries_add. grid: of the sum, see grid.h. */
-static inline void fibrad_wall_add(double part[4], uint32_t k, bool end, double value, fibrad_grid grid) {
-    const double quarter = end ? fibrad_on_grid(value / 4, grid) : 0;
+ * fibrad_entries_add. */
+static inline void fibrad_wall_add(double part[4], uint32_t k, bool end, double value) {
+    const double quarter = end ? value / 4 : 0;
     part[k % 4 ^ 1] += quarter;
-    part[k % 4] += fibrad_on_grid(value, grid) - quarter;
+    part[k % 4] += value - quarter;
 }
 
 /* Sums over the points of a window in one octant, for each wall. There are eight partial sums for each, so that the

@@ -206,7 +206,6 @@ void fibrad_work_begin(fibrad_workspace *work, const fibrad_scene *scene, uint32
     work->entries.length = work->entries.missed = 0;
     work->entries.end = false;
     work->parallel = false;
-    work->entries.grid = (fibrad_grid){0, 0};
     work->entries.masked = work->entries.halves = false;
     work->entries.weight = work->entries.balance[0] = work->entries.balance[1] = 1;
     fibrad_zero(work->wall, sizeof work->wall);

@@ -128,9 +128,7 @@ static inline uint32_t fibrad_work_sphere(const fibrad_workspace *work, uint32_t
 }
 
 /* Adds what a window sees of a slot. */
-static inline void fibrad_work_slot(fibrad_workspace *work, uint32_t slot, double value) {
-    work->wall[slot] += fibrad_on_grid(value, work->entries.grid);
-}
+static inline void fibrad_work_slot(fibrad_workspace *work, uint32_t slot, double value) { work->wall[slot] += value; }
 
 /* Adds the area of a disc that window k sees. */
 static inline void fibrad_work_accumulate(fibrad_workspace *work, uint32_t disc, uint32_t k, double area) {

@@ -1,4 +1,6 @@
 # test_bed.py - powers and temperatures from Python against closed forms. SPDX-License-Identifier: MIT
+import copy
+import pickle
 import re
 import threading
 
@@ -302,7 +304,7 @@ def test_walls_find_their_temperatures():
     walls = ["xmin:at=-9:insulated", "box:temperature=500:emissivity=0.8", "zmax:at=9:power=9e5:emissivity=0.8"]
     places = [f"{name}:at={at}:temperature=500:emissivity=0.8" for name, at in (("xmax", 9), ("ymin", -9), ("ymax", 9), ("zmin", -9))]
     with fibrad.Bed([[0, 0, 0], [3, 0, 0]], 1, walls=[*walls, *places]) as bed:
-        bed.beams(directions=36, patches=24)
+        bed.beams(directions=72, patches=24)
         found = bed.solve([np.nan, 700], 0.5, power=[0, np.nan], walls=[fibrad.wall("zmax", power=0)])
         short = bed.advance(400, 60, capacity=5e4, emissivity=0.5, power=[0, 1e4])
         end = bed.advance(short.temperatures, 1e5, capacity=5e4, emissivity=0.5, power=[0, 1e4])
@@ -449,6 +451,29 @@ def test_powers_walls_and_a_move(small):
         gone = end.surroundings + end.walls["zmin"]
         assert stored + gone == pytest.approx(10 * power.sum(), abs=1e-9 * abs(stored))
     assert f"<fibrad.Advance: {small.n} spheres of" in repr(one) and "zmin" in repr(one)
+
+
+def test_a_bed_shows_itself_and_cannot_be_pickled():
+    with fibrad.Bed([[0, 0, 0], [3, 0, 0]], [1, 2.5], walls="zmin:at=-3,zmax:at=3", box=[9, 0, 0]) as bed:
+        assert repr(bed) == "<fibrad.Bed: 2 spheres of radius 1 to 2.5, box (9, 0, 0), zmin, zmax>"
+        for copied in (pickle.dumps, copy.copy):
+            with pytest.raises(TypeError, match="a Bed cannot be pickled or copied"):
+                copied(bed)
+    assert repr(bed).endswith("closed>")
+    assert repr(fibrad.Bed(np.zeros((0, 3)), 1.0)) == "<fibrad.Bed: 0 spheres>"
+
+
+def test_ends_of_contacts_may_be_whole_floats():
+    bed = fibrad.Bed([[0, 0, 0], [3, 0, 0]], 1.0)
+    given = {"temperature": [900.0, np.nan], "emissivity": 0.8, "power": 0.0, "surroundings": 300.0}
+    one = bed.solve(**given, contacts=([0], [1], [5.0]))
+    two = bed.solve(**given, contacts=(np.array([0.0]), [1.0], [5.0]))
+    assert two.temperatures[1] == pytest.approx(one.temperatures[1], rel=1e-6)
+    for end in (np.nan, 0.5):
+        with pytest.raises(fibrad.InputError, match="neither a sphere nor a wall"):
+            bed.solve(**given, contacts=([end], [1], [5.0]))
+    with pytest.raises(fibrad.InputError, match="coo_array makes one of a dense matrix"):
+        bed.solve(**given, contacts=np.ones((2, 2)))
 
 
 def test_spans_that_cannot_be():

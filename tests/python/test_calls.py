@@ -186,6 +186,16 @@ def test_memory_is_given_back(what, mono):
     assert resident() - before < 5e6
 
 
+@pytest.mark.parametrize("radii, centre, wrong", [
+    ([1, -1], 2.9, "radius -1"), ([1, float("nan")], 2.9, "radius nan"), (-1, 2.9, "radius -1"), (1e-300, 2.9, "1e-300"),
+    (1, float("nan"), "coordinate"), (1, 1e300, "coordinate"), (1, 1, "the same centre")])
+def test_contacts_of_no_bed(radii, centre, wrong):
+    with pytest.raises(fibrad.InputError, match=wrong):
+        fibrad.Bed([[0, 0, 1], [0, 0, centre]], radii).contacts(conductivity=30.0)
+    with pytest.raises(fibrad.InputError, match="along a periodic axis"):
+        fibrad.Bed([[0, 0, 1], [0, 0, 3]], 1, box=[1e-3, 0, 0]).contacts(conductivity=30.0)
+
+
 def test_refusals_say_which_argument(small):
     """A value of another type is refused in words of fibrad, with the name of the argument."""
     light = fibrad.Light((0, 0, -1), 1000.0)

@@ -6,7 +6,7 @@ import math
 import threading
 import weakref
 from collections.abc import Iterable
-from typing import Any, Optional, Union
+from typing import Any, NoReturn, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -117,6 +117,16 @@ class Bed:
                 raise (container or self._container).error(packing or self._packing, status, fault)
         finally:
             self._busy.release()
+
+    def __repr__(self) -> str:
+        r = self._packing.r
+        radii = f" of radius {r.min():.6g} to {r.max():.6g}" if self.n else ""
+        box = ", box ({:.6g}, {:.6g}, {:.6g})".format(*self._container.period) if self._container.period.any() else ""
+        walls = ", ".join(["", *self._container.names])
+        return f"<fibrad.Bed: {self.n} spheres{radii}{box}{walls}{'' if self._handle else ', closed'}>"
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("a Bed cannot be pickled or copied: it is memory of the library. Pickle its arrays and its results")
 
     @property
     def n(self) -> int:

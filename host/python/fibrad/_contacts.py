@@ -31,7 +31,8 @@ class Contacts(NamedTuple):
 
 def _ends(name: str, given: Any, n: int, container: Container) -> NDArray[np.uint32]:
     """Numbers of spheres, and names of walls as n plus their numbers."""
-    numbers = [n + container.names.index(end) if isinstance(end, str) and end in container.names else end
+    numbers = [n + container.names.index(end) if isinstance(end, str) and end in container.names else
+               int(end) if isinstance(end, float) and end.is_integer() else end  # columns of tables with blanks are floats
                for end in np.asarray(given, dtype=object).ravel().tolist()]
     wrong = [end for end in numbers if not isinstance(end, (int, np.integer)) or not 0 <= end < n + len(container.names)]
     if wrong:
@@ -52,7 +53,7 @@ def contacts_of(contacts: Any, n: int, container: Container) -> Contacts:
         above = upper.row < upper.col
         contacts = upper.row[above], upper.col[above], upper.data[above]
     if len(contacts) != 3:
-        raise refuse("contacts must be (i, j, conductance) or a SciPy matrix")
+        raise refuse("contacts must be (i, j, conductance) or a SciPy matrix; scipy.sparse.coo_array makes one of a dense matrix")
     values = np.ascontiguousarray(doubles("contacts", contacts[2]).ravel())
     first, second = (_ends(name, given, n, container) for name, given in zip("ij", contacts))
     if not first.shape == second.shape == values.shape:

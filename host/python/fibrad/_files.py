@@ -203,7 +203,7 @@ def read(path: Path, frame: int = -1, *, columns: Sequence[str] = (), radius: Op
 
 
 def stl(path: Path, spheres: Any, period: ArrayLike, scale: float, sides: str) -> tuple[Any, Any, bool]:
-    """Vertices and triangles of an STL file, and whether both sides belong to the wall. The fronts belong to the
+    """Vertices and triangles of an STL or OBJ file, and whether both sides belong to the wall. The fronts belong to the
     wall."""
     if sides not in _SIDES:
         raise refuse(f"sides = {sides!r} is none of {', '.join(_SIDES)}")

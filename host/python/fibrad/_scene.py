@@ -102,7 +102,7 @@ class Mesh:
     @classmethod
     def from_stl(cls, path: Any, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, scale: float = 1.0,
                  sides: str = "auto") -> Mesh:
-        """Reads a wall from an STL file, as the program does. The file may be text or binary, also packed by gzip.
+        """Reads a wall from an STL or OBJ file, as the program does. The file may be text or binary, also packed by gzip.
         Corners that nearly coincide are joined, and the sides of the wall are chosen.
 
         Parameters

@@ -43,6 +43,11 @@ struct vtk_grid {
 int vtk_read_legacy(struct vtk_grid *grid);
 int vtk_read_xml(struct vtk_grid *grid);
 
+/* Finds the next DataSet of a text, and moves *text behind it: the file that it names, and the time. False: there is
+ * none. */
+enum { VTK_WORD = 1000 };
+bool vtk_next_set(const char **text, char time[VTK_WORD], char file[VTK_WORD]);
+
 /* The type by its name in a legacy or XML file. size 0: there is none. */
 struct vtk_type vtk_find_type(const char *name);
 

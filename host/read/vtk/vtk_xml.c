@@ -1,5 +1,5 @@
-/* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu, and of .pvtp and .pvtu, whose pieces are such files.
- * SPDX-License-Identifier: MIT
+/* vtk_xml.c - points and arrays of VTK's XML files, .vtp and .vtu, and of .pvtp, .pvtu and .vtm, whose pieces are such
+ * files. SPDX-License-Identifier: MIT
  *
  * An array is text or base64 in the tag that declares the array. Or the array is appended: it stands at an offset in
  * the last tag of the file, as base64 or bytes. Binary data begin with the number of bytes, or with a list of blocks
@@ -15,7 +15,7 @@
 #include "text/read_number.h"
 #include "read/vtk/vtk_grid.h"
 
-enum { WORD = 1000, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
+enum { WORD = VTK_WORD, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
 
 struct xml {
     struct vtk_grid *grid;
@@ -83,6 +83,16 @@ static const char *attribute(const struct tag *tag, const char *name, char value
         break;
     }
     return value;
+}
+
+bool vtk_next_set(const char **text, char time[VTK_WORD], char file[VTK_WORD]) {
+    const char *set = strstr(*text, "<DataSet");
+    if (!set) return false;
+    const struct tag tag = {set, set + strcspn(set, ">")};
+    attribute(&tag, "timestep", time);
+    attribute(&tag, "file", file);
+    *text = tag.end;
+    return true;
 }
 
 static uint64_t number_of(const struct tag *tag, const char *name, uint64_t otherwise) {
@@ -206,10 +216,9 @@ static int take_values(struct xml *xml, const struct place *place, double **valu
 static int xml_file(struct xml *xml, const struct tag *tag) {
     char value[WORD];
     attribute(tag, "type", value);
-    if (strcmp(value, "Collection") == 0)
-        return xml_fail(xml, "this is a ParaView collection: it names the files that have spheres");
-    xml->parallel = *value == 'P' && (strcmp(value + 1, "PolyData") == 0 || strcmp(value + 1, "UnstructuredGrid") == 0);
-    if (xml->parallel && !xml->grid->open) return xml_fail(xml, "a piece of a VTK file has no points, but pieces");
+    xml->parallel = strcmp(value, "PPolyData") == 0 || strcmp(value, "PUnstructuredGrid") == 0 ||
+                    strcmp(value, "vtkMultiBlockDataSet") == 0;
+    if (xml->parallel && !xml->grid->open) return xml_fail(xml, "pieces of pieces have no points, but pieces");
     if (!xml->parallel && strcmp(value, "PolyData") != 0 && strcmp(value, "UnstructuredGrid") != 0)
         return vtk_fail(xml->grid, NULL, "this is a VTK file of type %.40s: it has no spheres", value);
     xml->big = strcmp(attribute(tag, "byte_order", value), "BigEndian") == 0;
@@ -270,8 +279,11 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
 }
 
 static int xml_tag(struct xml *xml, const struct tag *tag) {
+    char file[WORD];
     if (is_tag(tag, "VTKFile")) return xml_file(xml, tag);
     if (is_tag(tag, "Piece")) return take_piece(xml, tag);
+    if (is_tag(tag, "DataSet") && xml->parallel && *attribute(tag, "file", file)) /* a block without a file is empty */
+        return xml->grid->open(file, xml->grid->context);
     if (!xml->within) return STATUS_OK;
     if (is_tag(tag, "DataArray") && (xml->points || xml->point_data)) return xml_array(xml, tag);
     const bool begins = *tag->text != '/' && tag->end[-1] != '/';
