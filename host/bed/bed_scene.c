@@ -57,6 +57,7 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
     if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);
     if (status == FIBRAD_E_GEOMETRY)
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
+    if (status == FIBRAD_E_UNSETTLED) return message_at(STATUS_INPUT, file, 0, "%s", fibrad_status_text(status));
     if (!known)
         return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
     return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %s", (long long)bed_name(bed, first),

@@ -76,8 +76,7 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
         state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH_DEFAULT;
         state->rule.gas_jump = o->jump / bed->metres, state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / bed->metres;
     }
-    int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
-                                 SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);
+    int status = solid_values(bed_options, bed, state->of_solid, &state->solid);
     if (status) return status;
     status = fibrad_bed_contacts(made, &state->rule, &state->list);
     return status ? bed_options_status(bed_options, bed, status, &(fibrad_fault){0}) : STATUS_OK;

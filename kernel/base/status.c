@@ -38,6 +38,8 @@ const char *fibrad_status_text(int status) {
         return "the walls form a tube or a corner without end: make the missing side a wall or an opening";
     case FIBRAD_E_FILE:
         return "a file cannot be made or written";
+    case FIBRAD_E_UNSETTLED:
+        return "the search for radiosities and temperatures does not converge";
     default:
         return "no known status";
     }

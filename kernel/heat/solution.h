@@ -79,6 +79,9 @@ static inline double fibrad_heat_temperature(const fibrad_heat *heat, double emi
  * it is emitted because the patch is hotter than the rest of the body. */
 double fibrad_heat_sent_back(const fibrad_heat *heat, uint32_t body);
 
+/* g of the shortest waves on a sphere that conducts. */
+double fibrad_heat_largest_gain(const fibrad_heat *heat, uint32_t body);
+
 /* Finds the unevenness of all spheres from their emissions. Returns the largest relative change. If the change is not
  * above `least`, the unevenness stays. */
 double fibrad_heat_find_unevenness(fibrad_heat *heat, double least);

@@ -255,8 +255,9 @@ static void find_powers(const fibrad_heat *heat, double *power) {
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
 }
 
-/* The relative rounding error of a sum of squares. */
-#define ROUNDING 1e-28
+/* Relative rounding errors of a sum of squares: of emissions, and of radiosities. */
+#define ROUNDING      1e-28
+#define ROUNDING_OF_J 1e-29
 
 /* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, unevenness and temperatures
  * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_FIRST_TOLERANCE, later ones to
@@ -564,11 +565,31 @@ static bool gains_settled(fibrad_heat *heat) {
     return settled && left <= heat->sources.settled * heat->sources.settled * gains;
 }
 
+/* What rounding errors of the J of a body may add to the product of residuals and changes: J errs by about 1e-16 of
+ * itself, and the body absorbs g times what differs in its J. */
+static double rounding_of(const fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->sources.emissivity[b];
+    const bool conducts = fibrad_heat_conducts(heat, b), free_mean = conducts && follows_radiosity(heat, b);
+    const double of_pattern = conducts ? fibrad_heat_largest_gain(heat, b) : 0;
+    const double of_mean = eps == 1 || free_mean || (conducts && has_black_mean(heat, b)) ? 0 : eps / (1 - eps);
+    double sum = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        sum += heat->solution.area[a] * heat->solution.radiosity[a] * heat->solution.radiosity[a];
+    return ROUNDING_OF_J * fibrad_max(of_pattern, of_mean) * sum;
+}
+
+/* Whether what is left of the residual may be rounding errors of radiosities. */
+static bool is_rounded(const fibrad_heat *heat) {
+    double rounding = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) rounding += rounding_of(heat, b);
+    return heat->solution.slope <= rounding;
+}
+
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(fibrad_heat *heat) {
     const double tolerance = fibrad_max(heat->sources.first_tolerance, heat->sources.tolerance);
-    if (heat->solution.slope <= heat->solution.smallest || heat->solution.sweeps >= heat->sources.limit) return true;
-    if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return false;
+    if (heat->solution.slope <= heat->solution.smallest) return true;
+    if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return is_rounded(heat);
     return tolerance > heat->sources.tolerance || tolerance < GAINS_ROUGHLY || gains_settled(heat);
 }
 
@@ -587,7 +608,7 @@ static void note_unsettled(fibrad_heat *heat) {
 
 /* Whether the unevenness of spheres has changed so much that it was replaced. */
 static bool replaces_unevenness(fibrad_heat *heat) {
-    if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
+    if (!heat->sources.conducts) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_unevenness(heat, SETTLED);
     heat->sources.first_tolerance = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
@@ -596,7 +617,7 @@ static bool replaces_unevenness(fibrad_heat *heat) {
 
 /* Whether the flows of contacts at their places have changed so much that they were replaced. */
 static bool replaces_flows(fibrad_heat *heat) {
-    if (heat->spots.entering == NULL || heat->solution.sweeps >= heat->sources.limit) return false;
+    if (heat->spots.entering == NULL) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_spots(heat);
     const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
@@ -754,8 +775,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart || heat->solution.slope == 0 ? 0 : fibrad_sqrt(fibrad_min(1, heat->solution.slope / last));
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
-        const bool rough =
-            heat->sources.first_tolerance > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
+        const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
         const bool replaced = replaces_given(heat, coarse);
         if (!replaced && !(coarse && rough)) {
             leave_level(heat);
@@ -772,7 +792,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
 
-/* Does what the sweep was made for. Error: FIBRAD_E_UNSOLVABLE. */
+/* Does what the sweep was made for. Errors: FIBRAD_E_UNSOLVABLE, FIBRAD_E_UNSETTLED. */
 static int end_sweep(fibrad_heat *heat) {
     const double *sum = fibrad_heat_gathered(heat);
     if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
@@ -781,7 +801,7 @@ static int end_sweep(fibrad_heat *heat) {
         heat->solution.warm = true;
         return FIBRAD_OK;
     }
-    heat->solution.sweeps++;
+    if (heat->solution.sweeps++ >= heat->sources.limit) return FIBRAD_E_UNSETTLED;
     switch (heat->solution.phase) {
     case FIBRAD_HEAT_AREA:
         fibrad_copy(heat->solution.area, sum, heat->patches * sizeof *sum);
