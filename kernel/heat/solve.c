@@ -408,9 +408,36 @@ static void send_means(fibrad_heat *heat) {
     heat->solution.phase = FIBRAD_HEAT_CHECK;
 }
 
+/* Finds the emissions of joined bodies with which a search begins: those that balance contacts, powers, and as much
+ * radiation as if all that a body sees had its emission of now. */
+static void guess_joined(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    if (c->count == 0 || !c->afresh) return;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] =
+            heat->sources.given_power[b] + (c->stiff[b] - heat->sources.storage[b]) * heat->sources.emission[b];
+    }
+    fibrad_contact_find(c, BALANCED_ROUGHLY);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        const double more = fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b];
+        heat->sources.emission[b] += more;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+            heat->solution.radiosity[a] += heat->sources.emissivity[b] * more;
+    }
+}
+
+/* Has the first sweep of a search form the net flows. */
+static void send_first(fibrad_heat *heat) {
+    guess_joined(heat);
+    send_radiosities(heat, FIBRAD_HEAT_FIRST);
+}
+
 void fibrad_heat_start(fibrad_heat *heat) {
     if (heat->solution.areas)
-        send_radiosities(heat, FIBRAD_HEAT_FIRST);
+        send_first(heat);
     else {
         fibrad_heat_link_pencils(heat);
         heat->solution.phase = FIBRAD_HEAT_AREA;
@@ -741,7 +768,7 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     const double curvature = product_with_direction(heat, heat->solution.direction, heat->contacts.direction, product);
     heat->solution.curvature = curvature;
     if (!(curvature > 0)) return;
-    const double length = heat->solution.slope / curvature;
+    const double length = heat->solution.along / curvature;
     find_drifts(heat, length, product);
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->solution.radiosity[a] += length * heat->solution.direction[a];
@@ -751,16 +778,41 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
         if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
 }
 
+/* The product of the residual with the last direction. In a linear problem it is 0. What the preconditioner makes of
+ * the residual is in heat->solution.source. */
+static double along_last(const fibrad_heat *heat) {
+    const double *z = heat->solution.source, *p = heat->solution.direction;
+    double sum = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double eps = heat->sources.emissivity[b], rho = 1 - eps;
+        double shift = 0, shifted = 0; /* what z and p have from a change of E, or of the mean of J */
+        if (fibrad_heat_is_joined(heat, b)) {
+            shift = eps * heat->contacts.warming[b], shifted = eps * heat->contacts.direction[b];
+            sum += heat->contacts.missing[b] * heat->contacts.direction[b];
+        } else if (fibrad_heat_is_free(heat, b)) {
+            const free_body body = free_body_of(heat, b);
+            if (!(body.area > 0)) continue;
+            shift = fibrad_heat_mean(heat, b, z), shifted = fibrad_heat_mean(heat, b, p);
+            sum += body.area * stiffness(heat, b, &body) * shift * shifted;
+        }
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && rho > 0; a++)
+            sum += heat->solution.area[a] / rho * (z[a] - shift) * (p[a] - shifted);
+    }
+    return sum;
+}
+
 /* How much of the last direction the next one keeps: as much as makes both conjugate. In a linear problem this is the
  * ratio of slopes. Contacts bend, so it differs from that. If it differs much, the last step was of no use for the next
- * one, and nothing is kept. */
+ * one, and nothing is kept. Sets the slope along the direction. */
 #define KEPT_MOST 4.0
-static double kept_of_direction(const fibrad_heat *heat, double ratio, const double *product) {
+static double kept_of_direction(fibrad_heat *heat, double ratio, const double *product) {
     if (heat->contacts.count == 0 || heat->sources.conducts) return ratio;
     if (!(heat->solution.curvature > 0)) return 0;
     const double overlap = product_with_direction(heat, heat->solution.source, heat->contacts.warming, product);
-    const double keep = -overlap / heat->solution.curvature;
-    return keep > 0 && keep < KEPT_MOST * ratio ? keep : 0;
+    const double keep = -overlap / heat->solution.curvature, along = heat->solution.slope + keep * along_last(heat);
+    if (!(keep > 0 && keep < KEPT_MOST * ratio && along > 0)) return 0;
+    heat->solution.along = along;
+    return keep;
 }
 
 /* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
@@ -788,6 +840,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart = restart || replaced;
         heat->solution.slope = find_residual(heat);
     }
+    heat->solution.along = heat->solution.slope;
     turn_direction(heat, restart ? 0 : kept_of_direction(heat, heat->solution.slope / last, product));
     heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
@@ -806,7 +859,7 @@ static int end_sweep(fibrad_heat *heat) {
     case FIBRAD_HEAT_AREA:
         fibrad_copy(heat->solution.area, sum, heat->patches * sizeof *sum);
         heat->solution.areas = true;
-        send_radiosities(heat, FIBRAD_HEAT_FIRST);
+        send_first(heat);
         return FIBRAD_OK;
     case FIBRAD_HEAT_FIRST:
         for (uint32_t b = 0; b < heat->bodies; b++)
