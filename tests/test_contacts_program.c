@@ -209,6 +209,41 @@ TEST(the_far_end_of_a_chain_holds) {
     }
 }
 
+/* The third name of the header is a unit. */
+TEST(conductances_have_units) {
+    static const char *const unit[] = {"W/K", "mW/K", "kW/K"}, *const wrong[] = {"K/W", "W/m/K", "H", "W"};
+    static const double scale[] = {1, 1e-3, 1e3};
+    for (int k = 0; k < 3; ++k) {
+        SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts",
+                contacts(formatted("i,j,%s\n0,zmin,5\n0,1,5\n", unit[k])));
+        assert_near(value_of("conductance_mean_W_K"), 5 * scale[k], 1e-9);
+    }
+    for (int k = 0; k < 4; ++k) {
+        FAIL_WITH(3, "heat", ROW, "--emissivity", "0.8", "--contacts",
+                  contacts(formatted("i,j,%s\n0,zmin,5\n", wrong[k])));
+        assert_has(said, formatted("contacts.csv:1: the third name of the header is '%s'", wrong[k]));
+    }
+}
+
+/* An insulated wall in contact has the power 0, and a temperature that is found, in time as well. */
+TEST(insulated_walls_in_contact) {
+    const char *file = contacts("i,j,W/K\n0,zmin,0.5\n2,zmax,0.5\n"), *of_wall[] = {"zmin:insulated", "zmin:power=0"};
+    double found[2], in_time = 0;
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", row(), "--length-unit", "m", "--power", "P", "--emissivity", "0.8", "--periodic", ".04,.04,0",
+                "--wall", of_wall[k], "--wall", "zmax:at=.0602:temperature=500", "--contacts", file);
+        found[k] = value_of("wall_zmin_K");
+        if (k == 0) assert_has(said, "the insulated wall zmin is in contact, so it has one temperature");
+    }
+    ck_assert_double_eq(found[0], found[1]);
+    SUCCEED("heat", row(), "--length-unit", "m", "--power", "P", "--emissivity", "0.8", "--periodic", ".04,.04,0",
+            "--wall", of_wall[0], "--wall", "zmax:at=.0602:temperature=500", "--contacts", file, "--temperature", "500",
+            "--until", "20000", "--times", "100", "--heat-capacity", "800", "--density", "2500", "-o",
+            in_folder("t.csv"));
+    in_time = value_of("wall_zmin_K");
+    assert_near(in_time, found[0], 2e-3);
+}
+
 /* Options that need others, or cannot be combined. */
 TEST(options_at_fault) {
     const char *file = contacts("i,j,W/K\nzmin,1,1\n");
@@ -223,7 +258,8 @@ TEST(options_at_fault) {
     assert_has(said, "the file names no unit of length, which contacts need");
     FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0.8",
               "--wall", "zmin:insulated", "--contacts", file);
-    assert_has(said, "wall zmin is in contact and needs one temperature or a power");
+    assert_has(said,
+               "zmin is in contact and needs one temperature, or a power: --wall zmin:power=0 if it is insulated");
     FAIL_WITH(3, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0",
               "--contacts", contacts("i,j,W/K\n0,1,1\n"));
     assert_has(said, "row.csv:2: sphere 0 has emissivity 0, and nothing that it touches radiates or has a temperature");

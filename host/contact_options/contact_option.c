@@ -237,8 +237,10 @@ int contacts_refuse(const struct contact_state *state, const struct bed_options 
                     const struct walls *walls, int status, const fibrad_fault *fault) {
     if (!state->options || !status) return STATUS_OK;
     if (fault->why == FIBRAD_WHY_TOUCHED)
-        return message(STATUS_USAGE, "wall %s is in contact and needs one temperature or a power",
-                       wall_name(walls, fault->wall - 1));
+        return message(
+            STATUS_USAGE,
+            "wall %s is in contact and needs one temperature, or a power: --wall %s:power=0 if it is insulated",
+            wall_name(walls, fault->wall - 1), wall_name(walls, fault->wall - 1));
     if (fault->why == FIBRAD_WHY_REFLECTS && fault->first < bed->n)
         return message_at(STATUS_INPUT, options->name, bed->line[fault->first],
                           "sphere %lld has emissivity 0 and no contact, and cannot give off a power",
