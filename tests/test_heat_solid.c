@@ -49,6 +49,22 @@ TEST(pebbles_touch_at_a_spot) {
     ck_assert_double_gt(entry(q, 0, 6), 1030);
 }
 
+/* A sphere that conducts, between two black plates. Flows are those of a series in rings with 384 times as many points
+ * (outside of the program). Those of spheres of one temperature would be 300 W. */
+TEST(flows_at_plates) {
+    static const char *const settings[][2] = {{"300", "96"}, {"2000", "96"}, {"1000", "384"}};
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0.5,0.5\n"), *flows = in_folder("flows.csv");
+    const char *contacts = write_file("contacts.csv", "i,j,W/K\n0,zmin,6\n0,zmax,6\n");
+    for (int k = 0; k < 3; ++k) {
+        SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--power", "0", "--ambient", "900", "--wall",
+                "zmin:at=0:temperature=900", "--wall", "zmax:at=1:temperature=1000", "--solid-conductivity", "100",
+                "--contacts", contacts, "--contact-flows", flows, "--directions", settings[k][0], "--patches",
+                settings[k][1]);
+        assert_near(entry(flows, 0, 3), 198.6, .01);
+        assert_near(entry(flows, 1, 3), -150.4, .01);
+    }
+}
+
 /* All files have all columns. Walls and surroundings have no values in them. */
 TEST(files_have_insides) {
     const char *file = spheres(), *q = in_folder("q.csv"), *json = in_folder("q.json"), *vtp = in_folder("q.vtp");
