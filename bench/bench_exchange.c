@@ -70,7 +70,7 @@ static void analog(struct bench *bench, uint32_t i, uint32_t paths, uint32_t dir
             for (int axis = 0; axis < 3; ++axis) w[axis] += n[axis];
             const double inverse = 1 / sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
             for (int axis = 0; axis < 3; ++axis) w[axis] *= inverse;
-            trace(tracer, place, n, w, &hit);
+            trace(bench->scene, tracer, place, n, w, &hit);
             ++*rays;
             place = hit.sphere;
             memcpy(n, hit.normal, sizeof n);

@@ -76,8 +76,7 @@
  *              centres inside other spheres             fibrad_spheres_inside
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
- *              one row, computed by several threads     fibrad_beam_part, _join
- *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init, _count
+ *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init
  *   rows       a collection of rows                     fibrad_rows_add, _clear, _read
  *   matrix     all rows: averaged, reciprocal, closed   fibrad_matrix_size, _init, _close, _read, _reciprocity
  *   exchange   factors after reflections (grey)         fibrad_exchange_row, _wall, _wall_mean, _displacement
@@ -123,7 +122,7 @@ typedef enum fibrad_status {
     FIBRAD_E_CANCELLED = -12,   /* A progress function has asked to stop. */
     FIBRAD_E_UNSOLVABLE = -13,  /* No temperatures give the powers that were asked for. */
     FIBRAD_E_BACK = -14,        /* A ray met a side that belongs to no wall. The triangle is written to the output. */
-    FIBRAD_E_SUM = -15,         /* A row's sum is not 1 within 1e-9: its parts were changed, or the library errs. */
+    FIBRAD_E_SUM = -15,         /* A row's sum is not 1 within 1e-9. This is a fault of the library. */
     FIBRAD_E_ENDLESS = -16,     /* The walls form a tube or a corner without end. Add a wall or an opening. */
     FIBRAD_E_FILE = -17,        /* A file cannot be made, written or renamed. Only functions of the host return this. */
     FIBRAD_E_UNSETTLED = -18    /* A search for radiosities and temperatures has not ended after all its sweeps. */
@@ -471,9 +470,6 @@ size_t fibrad_line_set_size(uint32_t lines);
  *   Source   docs/methods.md section 12 */
 int fibrad_line_set_init(fibrad_line_set **set, void *memory, size_t size, uint32_t lines);
 
-/* The number of lines of a set. NULL: 0. */
-uint32_t fibrad_line_set_count(const fibrad_line_set *set);
-
 /* For fibrad_beam_rule.chords. NONE: exact areas. SUITED: the number of chords that suits the number of lines or
  * directions: 16 up to 80, 32 up to 250, 64 up to 724, exact areas beyond. */
 #define FIBRAD_CHORDS_NONE   1
@@ -516,39 +512,6 @@ int fibrad_beam_row(const fibrad_scene *scene, fibrad_work *work, uint32_t i, co
 /* The number of directions to try next when a row of so many directions has an error above the tolerance, by the law
  * directions^-1.5. At least 6/5 of `directions`, at most FIBRAD_DIRECTIONS_MAX. Source: docs/methods.md section 3. */
 uint32_t fibrad_directions_for(uint32_t directions, double error, double tolerance);
-
-/* A part of a beam row: sums over some of its windows. These sums are the same to the bit in any order of the windows.
- * Set `memory`, and zero the rest. */
-typedef struct fibrad_row_part {
-    fibrad_memory memory;         /* about 400 bytes, 36 for each sphere seen, and 2.5 KB if there are walls */
-    uint64_t key;                 /* of the library: the row, rule and scene of this part; 0: none */
-    size_t used;                  /* of the library: bytes of memory */
-    uint32_t from, to, fallbacks; /* of the library: the windows, and those left to the robust method */
-} fibrad_row_part;
-
-/* Windows `from` to `to` - 1 of a beam row. Several threads may compute different parts of one row at the same time.
- *   Input    work: of the calling thread
- *            i: 0 to spheres - 1
- *            rule: as for fibrad_beam_row; NULL for all defaults
- *            from, to: 0 <= from < to <= directions or lines of the rule
- *   Output   part: after an error it makes no row
- *   Errors   _ARGUMENT, _STATE, _TABLE, _WORK, _MEMORY, _BACK
- *            _CAPACITY: fixed part->memory is too small; part->memory.needed is the size that suffices
- *            _UNSUPPORTED: the rule has a tolerance
- *   Cost     that of fibrad_beam_row for as many directions */
-int fibrad_beam_part(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
-                     uint32_t from, uint32_t to, fibrad_row_part *part);
-
-/* The row that the parts make up, the same to the bit as by fibrad_beam_row.
- *   Input    i, rule: as for the parts
- *            part[parts]: in ascending order of windows, without gaps
- *   Output   row
- *   Errors   as fibrad_beam_row
- *            _STATE: a part is missing, or belongs to another row, rule or scene
- *            _UNSUPPORTED: the rule has a tolerance
- *   Cost     some ns for each sphere that a part sees, and some microseconds for each part if there are walls */
-int fibrad_beam_join(const fibrad_scene *scene, fibrad_work *work, uint32_t i, const fibrad_beam_rule *rule,
-                     const fibrad_row_part *part, uint32_t parts, fibrad_row *row);
 
 /* How a row is sampled by rays. Zeroed: FIBRAD_RAYS_DEFAULT quasi-random rays, seed 0, no cutoff. */
 typedef struct fibrad_cast_rule {

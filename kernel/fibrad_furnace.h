@@ -3,7 +3,7 @@
  *
  * Index
  *   furnace    fibrad_furnace_size, _init, _fields, _temperature
- *   equations  fibrad_furnace_theta, _solve, _balance
+ *   equations  fibrad_furnace_theta, _solve
  *   bundles    fibrad_furnace_emit, _tally_size, _tally_init, _trace, _tally_add, _estimate, _equilibrium
  *
  * Problem    Every cell of the medium emits `source` more than it absorbs. This gives the temperatures of the medium.
@@ -121,11 +121,6 @@ typedef struct fibrad_furnace_report {
  *   Source   the paper, equations 5 to 8 */
 int fibrad_furnace_solve(fibrad_furnace *furnace, fibrad_furnace_scatter scatter, double tolerance, uint32_t sweeps_max,
                          fibrad_furnace_report *report);
-
-/* Sets divergence, six_flux, wall and power from the fluxes. Call this for fluxes that another solver has written.
- *   Errors   _ARGUMENT
- *   Cost     O(cells) */
-int fibrad_furnace_balance(fibrad_furnace *furnace);
 
 /* What bundles of rays do. */
 typedef enum fibrad_furnace_physics {

@@ -7,13 +7,13 @@
  *
  * Sequence   1. fibrad_light_empty finds how much light would end on each wall, and how much would leave the bed, if
  *               there were neither spheres nor triangles.
- *            2. fibrad_light_spheres finds how much light each sphere of a range takes.
+ *            2. fibrad_heat_shine finds how much light the spheres of a task take, and puts it on their patches.
+ *               fibrad_heat_sum_light sums it up by sphere.
  * Walls      Step 2 also gives `kept`: where the light that spheres take would end if there were neither spheres nor
  *            triangles. So the light that ends on wall b is ends.wall[b] of step 1 minus the sum of kept.wall[b] over
- *            all ranges. The light that leaves the bed is ends.through minus the sum of kept.through.
+ *            all tasks. The light that leaves the bed is ends.through minus the sum of kept.through.
  * Triangles  They take a part of the light on other walls, and of the light that leaves. fibrad_heat_shine_walls finds
  *            these parts.
- * Patches    fibrad_heat_shine does step 2 for a heat problem, and puts the light on patches.
  * Units      as in fibrad.h. A power is in units of flux times L^2. With a flux of 1 it is an area.
  * Words      Memory, errors and the layout of comments are as in fibrad.h.
  * Source     docs/methods.md section 29. docs/heat.md says what is assumed.
@@ -39,8 +39,8 @@ typedef enum fibrad_light_shape {
 /* Light from outside. If all fields but direction and flux are zero, the light is parallel and enters through all
  * open faces.
  *
- * Light with a half-angle has directions that fill a cone evenly. Each direction carries an equal part of the flux. The
- * sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
+ * Light with a half-angle has directions that fill a cone evenly: its radiance is the same in all of them. Its flux is
+ * what a plane at right angles to `direction` receives. The sun's half-angle is FIBRAD_SUN_HALF_ANGLE.
  *
  * The box of the spheres is the box of their centres, wider by the largest radius on all sides. It also holds the
  * corners of triangles, but it ends at planes and periods. On periodic axes a disc or rectangle is repeated, and must
@@ -76,17 +76,6 @@ typedef struct fibrad_light_ends {
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,
                        fibrad_fault *fault);
 
-/* The light that comes to some spheres straight from outside. Several threads may ask for different spheres at the same
- * time.
- *   Input    from, to: the first sphere, and the one after the last sphere; at most the number of spheres
- *   Output   power[to - from]: the light that falls on each sphere, absorbed or not
- *            kept: `spheres` is the sum of `power`. `wall` and `through` are where this light would end if there were
- *            neither spheres nor triangles. They add up to `spheres`.
- *   Errors   as fibrad_light_empty
- *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each sphere */
-int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
-                         uint32_t to, double *power, fibrad_light_ends *kept);
-
 /* ---- light on patches --------------------------------------------------------------------------------------------
  * A surface absorbs light and thermal radiation with different absorptivities. Reflected light stays light. So light
  * has a solution of its own:
@@ -115,11 +104,12 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  * different tasks at the same time.
  *   Input    task: 0 to fibrad_heat_shine_tasks - 1
  *   Output   hits[fibrad_heat_patches]: the light is added to it
- *            kept: as fibrad_light_spheres
+ *            kept: `spheres` is the light that the spheres of the task take, absorbed or not. `wall` and `through` are
+ *            where this light would end if there were neither spheres nor triangles. They add up to `spheres`.
  *            apart[spheres]: light of even directions of a cone minus that of odd ones, for the spheres of the task
  *            alone; may be NULL
- *   Errors   as fibrad_light_spheres; _STATE: the scene has changed
- *   Cost     as fibrad_light_spheres; work memory has 8 bytes for each patch of the task */
+ *   Errors   as fibrad_light_empty; _STATE: the scene has changed
+ *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept, double *apart);
 

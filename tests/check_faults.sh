@@ -62,6 +62,12 @@ cmp -s "$work/old" "$work/F.csv" || complain "a failed run changed the older res
 rm -f "$work"/F.*
 verdict "limit of file sizes" $status 4 "F.csv: cannot be written: File too large"
 
+# Pictures as well
+for ending in svg png; do
+    (ulimit -f 64 && exec "$fibrad" factors "$bed" --directions 8 --plot "$work/F.$ending") >/dev/null 2>"$work/err"
+    verdict "limit of file sizes, .$ending" $? 4 "F.$ending: cannot be written: File too large"
+done
+
 # The reader of standard output ends: a pipe whose other end is closed
 mkfifo "$work/pipe"
 exec 3<>"$work/pipe"

@@ -27,7 +27,8 @@ struct contents {
     uint32_t n;
 };
 
-static const fibrad_heat_config heat_config = {.directions = 24, .patches = 24, .parts = PARTS};
+static const fibrad_heat_config heat_config = {
+    .directions = 12, .points = 64, .patches = 24, .wall_rays = 2000, .parts = PARTS};
 
 /* Spheres in two layers between a floor, a ceiling and one side wall. The other sides are open. */
 static inline struct contents contents_of(uint64_t seed) {
@@ -134,38 +135,16 @@ static inline void assert_nothing_to_solve(struct problem *p) {
 /* Contents with one change, which `what` selects. */
 static inline struct contents changed(const struct contents *from, int what) {
     struct contents c = *from;
-    double swap;
-    switch (what) {
-    case 0:
-        c.r[5] = nextafter(c.r[5], 0);
-        break;
-    case 1:
-        c.x[0] = nextafter(c.x[0], 1);
-        break;
-    case 2:
-        c.z[N - 1] += 1e-3;
-        break;
-    case 3: /* two of them change places */
-        swap = c.x[2], c.x[2] = c.x[3], c.x[3] = swap;
-        swap = c.y[2], c.y[2] = c.y[3], c.y[3] = swap;
-        swap = c.z[2], c.z[2] = c.z[3], c.z[3] = swap;
-        swap = c.r[2], c.r[2] = c.r[3], c.r[3] = swap;
-        break;
-    case 4:
-        c.wall[1].plane.at += 1e-9;
-        break;
-    case 5: /* walls in another order */
-        c.wall[0] = from->wall[1], c.wall[1] = from->wall[0];
-        break;
-    case 6:
-        c.period_x = 40;
-        break;
-    case 7:
-        c.n = N - 1;
-        break;
-    default:
-        c.n = 0;
-    }
+    if (what == 0) c.r[5] = nextafter(c.r[5], 0);
+    if (what == 1) c.x[0] = nextafter(c.x[0], 1);
+    if (what == 2) c.z[N - 1] += 1e-3;
+    for (uint32_t k = 2; k < 4 && what == 3; k++) /* two of them change places */
+        c.x[k] = from->x[5 - k], c.y[k] = from->y[5 - k], c.z[k] = from->z[5 - k], c.r[k] = from->r[5 - k];
+    if (what == 4) c.wall[1].plane.at += 1e-9;
+    if (what == 5) c.wall[0] = from->wall[1], c.wall[1] = from->wall[0]; /* walls in another order */
+    if (what == 6) c.period_x = 40;
+    if (what == 7) c.n = N - 1;
+    if (what == 8) c.n = 0;
     return c;
 }
 

@@ -5,15 +5,13 @@
 #include "fibrad_light.h"
 #include "scenes.h"
 
-/* What a light does in a bed. The whole is computed on one thread, in ranges of seven spheres. */
+/* What a light does in a bed. The whole is computed on one thread. */
 struct lit {
     double *power;
     fibrad_light_ends ends, empty;
     int status;
     fibrad_fault fault;
 };
-
-enum { RANGE = 7 };
 
 static inline void lit_free(struct lit *lit) { free(lit->power); }
 
@@ -30,13 +28,21 @@ static inline struct lit light_up(const struct bed *bed, const fibrad_scene_conf
     assert_ok(fibrad_scene_init(&scene, block, size, config, &spheres, NULL));
     lit.status = fibrad_light_empty(scene, &work, light, &lit.empty, &lit.fault);
     lit.ends = lit.empty;
-    for (uint32_t from = 0; from < bed->n && lit.status == 0; from += RANGE) {
-        const uint32_t to = from + RANGE < bed->n ? from + RANGE : bed->n;
+    if (lit.status) return lit;
+    const fibrad_heat_config least = {.patches = 24, .directions = FIBRAD_DIRECTIONS_MIN, .points = 64, .parts = 1};
+    const size_t bytes = fibrad_heat_size(&least, scene);
+    OWNED void *heat_block = block_of(bytes);
+    fibrad_heat *heat;
+    double wall_power[FIBRAD_WALLS_MAX];
+    assert_ok(fibrad_heat_init(&heat, heat_block, bytes, &least, scene));
+    OWNED double *hits = calloc(fibrad_heat_patches(heat), sizeof *hits);
+    for (uint32_t task = 0; task < fibrad_heat_shine_tasks(heat); task++) {
         fibrad_light_ends kept;
-        assert_ok(fibrad_light_spheres(scene, &work, light, from, to, lit.power + from, &kept));
+        assert_ok(fibrad_heat_shine(heat, &work, light, task, hits, &kept, NULL));
         lit.ends.spheres += kept.spheres, lit.ends.through -= kept.through;
         for (int b = 0; b < FIBRAD_WALLS_MAX; b++) lit.ends.wall[b] -= kept.wall[b];
     }
+    assert_ok(fibrad_heat_sum_light(heat, hits, lit.power, wall_power));
     return lit;
 }
 

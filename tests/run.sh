@@ -1,7 +1,7 @@
 #!/bin/sh
 # run.sh PROGRAM|SCRIPT... - runs tests and ends with "N passed, N failed". SPDX-License-Identifier: MIT
 #
-# Two tests run at a time. A libcheck program counts by its own summary, a script counts as one test. A program that ends
+# As many tests run at a time as there are processors. A libcheck program counts by its own summary, a script counts as one test. A program that ends
 # without a summary, or whose exit status contradicts its summary, counts as one more failure.
 set -u
 logs=${BUILD:=build}/tests/logs
@@ -31,16 +31,16 @@ if test "${1:-}" = --one; then
     exit 0
 fi
 
-# Two tests share the processors. Threads that wait must leave them to the other test: spinning took up to two thirds of
-# the time of tests with OpenMP.
-export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
+# Each test has one thread, unless it asks for more: the others have the other processors. Threads that wait must leave
+# them to the other tests: spinning took up to two thirds of the time of tests with OpenMP.
+export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}" OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
 
 # A loaded machine is no failure, so no test program has its own limit of time.
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | xargs -r -n 1 -P 2 "$0" --one
+printf '%s\n' "$@" | xargs -r -n 1 -P "$(nproc)" "$0" --one
 
 set -- 0 0 0 0
 for counts in "$logs"/*.counts; do

@@ -95,16 +95,21 @@ TEST(light_in_little_memory) {
     OWNED void *block = block_of(size), *small = block_of(MOST);
     const fibrad_light light = {.direction = {.1, .2, -1}, .flux = 1, .half_angle = .1, .directions = 3};
     const fibrad_scene *scene = crowded_scene(block, size);
+    const size_t bytes = fibrad_heat_size(&heat_config, scene);
+    OWNED void *heat_block = block_of(bytes);
+    fibrad_heat *heat;
+    assert_ok(fibrad_heat_init(&heat, heat_block, bytes, &heat_config, scene));
+    const size_t patches = fibrad_heat_patches(heat) * sizeof(double);
+    OWNED double *hits = malloc(patches);
     int failed = 0, status = FIBRAD_E_WORK;
     for (size_t room = STEP; status != FIBRAD_OK && room <= MOST; room += STEP) {
         fibrad_work work = work_fixed(small, room);
         fibrad_light_ends kept;
-        double power[CUBE];
-        memset(&kept, 0xEE, sizeof kept), memset(power, 0xEE, sizeof power);
-        status = fibrad_light_spheres(scene, &work, &light, 0, CUBE, power, &kept);
+        memset(&kept, 0xEE, sizeof kept), memset(hits, 0xEE, patches);
+        status = fibrad_heat_shine(heat, &work, &light, 0, hits, &kept, NULL);
         if (status == FIBRAD_OK) break;
         ck_assert_int_eq(status, FIBRAD_E_WORK);
-        ck_assert(is_all(&kept, sizeof kept, 0xEE) && is_all(power, sizeof power, 0xEE));
+        ck_assert(is_all(&kept, sizeof kept, 0xEE) && is_all(hits, patches, 0xEE));
         failed++;
     }
     assert_ok(status);
@@ -126,13 +131,10 @@ TEST(light_of_a_closed_box) {
     fibrad_heat *heat;
     fibrad_light_ends ends;
     fibrad_fault fault = {0};
-    double power = 77;
     assert_ok(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL));
     memset(&ends, 0xEE, sizeof ends);
     assert_invalid(fibrad_light_empty(scene, &work, &light, &ends, &fault));
     ck_assert_int_eq(fault.why, FIBRAD_WHY_DARK);
-    assert_invalid(fibrad_light_spheres(scene, &work, &light, 0, 1, &power, &ends));
-    ck_assert(power == 77);
     const size_t bytes = fibrad_heat_size(&heat_config, scene);
     OWNED void *heat_block = block_of(bytes);
     assert_ok(fibrad_heat_init(&heat, heat_block, bytes, &heat_config, scene));

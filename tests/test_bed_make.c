@@ -41,20 +41,6 @@ TEST(packing) {
     }
 }
 
-/* Spheres of a layer stay between its faces. Shaken beds do not overlap and keep their solid fraction. */
-TEST(layers_and_shaken_beds) {
-    OWNED_BED layer = bed_empty(), shaken = bed_empty();
-    ck_assert_int_eq(bed_make_layer(&layer, 300, .45, 2000, 3), 0);
-    ck_assert_double_ge(least_gap(&layer), 0);
-    ck_assert_double_eq(layer.period[2], 0);
-    ck_assert_double_eq_tol(300 * 4 * PI / 3 / pow(layer.high[2], 3), .45, 1e-12);
-    for (uint32_t i = 0; i < layer.n; i++) ck_assert(layer.z[i] >= 1 && layer.z[i] <= layer.high[2] - 1);
-    ck_assert_int_eq(bed_make_shaken(&shaken, 4, .4, 3), 0);
-    ck_assert_uint_eq(shaken.n, 256);
-    ck_assert_double_ge(least_gap(&shaken), 0);
-    ck_assert_double_eq_tol(256 * 4 * PI / 3 / pow(shaken.period[1], 3), .4, 1e-12);
-}
-
 TEST(copies) {
     OWNED_BED tile = bed_empty(), bed = bed_empty();
     ck_assert_int_eq(bed_make_packing(&tile, 60, .8, 1.2, .55, 7), 0);

@@ -247,7 +247,7 @@ TEST(spheres_beyond_the_cutoff_do_nothing) {
 TEST(bad_arguments_and_short_arrays_are_refused) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
-    fibrad_work work = work_growing();
+    OWNED_WORK work = work_growing();
     OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row row = row_of(200), small = {.capacity = 0};
     const fibrad_cast_rule bad[] = {{.random = 2}, {.random = -1}, {.cutoff = -1}, {.cutoff = NAN}};
@@ -273,6 +273,5 @@ TEST(bad_arguments_and_short_arrays_are_refused) {
     OWNED_MATRIX m = matrix_of(scene, &rows, 1, &(fibrad_matrix_rule){.raw = 1});
     const fibrad_row kept = matrix_row(&m.factors, 0);
     ck_assert(same_bits(&row, &kept));
-    work_free(&work);
     row_free(&row);
 }

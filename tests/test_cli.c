@@ -518,26 +518,6 @@ TEST(exchange_factors) {
     remove_files(0);
 }
 
-/* The simple cubic lattice has one sphere in each cell, here a black one. The number of threads changes nothing. */
-TEST(conductivity) {
-    const char *cell = write_file("cell.csv", "x,y,z,r,eps\n0,0,0,1,1\n");
-    SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "eps", "--rays", "40000", "--threads", "1");
-    const double first = value_of("F_E_z");
-    ck_assert_double_eq_tol(first, 1.2005, .03);
-    ck_assert_double_eq_tol(value_of("F_E_x"), 1.2005, .03);
-    ck_assert_double_lt(value_of("F_E_y_error"), .03);
-    ck_assert_double_gt(value_of("F_E_y_error"), .001);
-    SUCCEED("conductivity", cell, "--periodic", "2,2,2", "--emissivity", "1", "--rays", "40000", "--threads", "4");
-    ck_assert_double_eq(value_of("F_E_z"), first);
-    SUCCEED("conductivity", PERIODIC, "--emissivity", "0.8", "--error", "0.02");
-    ck_assert_double_eq_tol(value_of("F_E_x"), .80, .04);
-    ck_assert_double_lt(value_of("F_E_x_error") / value_of("F_E_x"), .025);
-    ck_assert_double_lt(value_of("emitters"), 1000);
-    FAIL_WITH(3, "conductivity", cell, "--periodic", "2,2,0", "--emissivity", "1");
-    expect_message(cell, "too thin along the open axis z");
-    remove_files(0);
-}
-
 TEST(points_and_cutoff) {
     SUCCEED("factors", POLY, "--directions", "34", "--points", "64");
     ck_assert_double_le(value_of("row_sum_max"), 1 + 1e-12);

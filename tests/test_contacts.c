@@ -2,6 +2,7 @@
  * exchange factors. SPDX-License-Identifier: MIT */
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
+#include <gsl/gsl_linalg.h>
 
 #include "simple/contact_list.h"
 #include "host_owned.h"
@@ -122,6 +123,7 @@ LOOP_TEST(a_chain_between_plates, 3) {
     struct bed row = bed_empty();
     for (uint32_t i = 0; i < n; i++) add_sphere(&row, 0, 0, 2. * i, 1);
     begin(j, row, 0);
+    j->config = (fibrad_heat_config){.directions = 36, .patches = 24, .wall_rays = 1000}; /* nothing is emitted */
     const uint32_t low = add_wall(j, 2, 0, -1, 1200, 0), high = add_wall(j, 2, 1, 2. * n - 1, 400, 0);
     join(j, low, 0, .5);
     for (uint32_t i = 1; i < n; i++) join(j, i - 1, i, .25 + .01 * i);
@@ -189,30 +191,6 @@ TEST(emissivities_next_to_one) {
     for (int k = 0; k < 3; k++) bed_free(&j[k].bed);
 }
 
-/* Solves A x = b by elimination with pivots. a[n][n] and b[n] are overwritten. */
-static void eliminate(uint32_t n, double *a, double *b) {
-    for (uint32_t k = 0; k < n; k++) {
-        uint32_t best = k;
-        for (uint32_t i = k + 1; i < n; i++)
-            if (fabs(a[i * n + k]) > fabs(a[best * n + k])) best = i;
-        for (uint32_t c = 0; c < n; c++) {
-            const double held = a[k * n + c];
-            a[k * n + c] = a[best * n + c], a[best * n + c] = held;
-        }
-        const double held = b[k];
-        b[k] = b[best], b[best] = held;
-        for (uint32_t i = k + 1; i < n; i++) {
-            const double times = a[i * n + k] / a[k * n + k];
-            for (uint32_t c = k; c < n; c++) a[i * n + c] -= times * a[k * n + c];
-            b[i] -= times * b[k];
-        }
-    }
-    for (uint32_t k = n; k-- > 0;) {
-        for (uint32_t c = k + 1; c < n; c++) b[k] -= a[k * n + c] * b[c];
-        b[k] /= a[k * n + k];
-    }
-}
-
 /* The temperature of an end of a contact in the Newton solution. */
 static double end_temperature(const struct joint *j, const double *t, uint32_t end) {
     return end < j->bed.n ? t[end] : j->wall_temperature[end - j->bed.n];
@@ -222,6 +200,8 @@ static double end_temperature(const struct joint *j, const double *t, uint32_t e
 static void by_newton(const struct joint *j, const fibrad_bed_matrix *d, double *t, double *q) {
     const uint32_t n = j->bed.n;
     static double matrix[MOST * MOST], left[MOST];
+    gsl_matrix_view a = gsl_matrix_view_array(matrix, n, n);
+    gsl_vector_view step = gsl_vector_view_array(left, n);
     for (int round = 0; round < 60; round++) {
         memset(matrix, 0, sizeof matrix);
         for (uint32_t i = 0; i < n; i++) {
@@ -256,7 +236,7 @@ static void by_newton(const struct joint *j, const fibrad_bed_matrix *d, double 
             for (uint32_t o = 0; o < n; o++) matrix[i * n + o] = i == o;
             left[i] = 0;
         }
-        eliminate(n, matrix, left);
+        ck_assert_int_eq(gsl_linalg_HH_svx(&a.matrix, &step.vector), 0);
         double change = 0;
         for (uint32_t i = 0; i < n; i++) {
             const double next = fmax(t[i] + left[i], t[i] / 2);
@@ -444,7 +424,7 @@ TEST(spots_of_a_pair_and_a_wall) {
     const double solid[2] = {30, 10};
     for (int spots = FIBRAD_SPOTS_LENS; spots <= FIBRAD_SPOTS_HERTZ; spots++) {
         const fibrad_contact_rule rule = {.spots = spots, .scale = .5};
-        fibrad_contact_list *list = found_in(&bed, &scene, &rule);
+        OWNED fibrad_contact_list *list = found_in(&bed, &scene, &rule);
         double h[2];
         ck_assert_uint_eq(list->n, 2);
         assert_ok(fibrad_contacts_conduct(list, &rule, solid, NULL, h));
@@ -452,7 +432,6 @@ TEST(spots_of_a_pair_and_a_wall) {
         const double wall = spots == FIBRAD_SPOTS_LENS ? sqrt(1 - .98 * .98) : sqrt(.02);
         ck_assert_double_le(fabs(h[0] - 2 * 15 * .5 * (spots == FIBRAD_SPOTS_LENS ? lens : hertz)), 1e-9 * h[0]);
         ck_assert_double_le(fabs(h[1] - 4 * 30 * .5 * wall), 1e-9 * h[1]);
-        free(list);
     }
 }
 
@@ -462,7 +441,7 @@ LOOP_TEST(contacts_with_triangles, 2) {
     OWNED_BED bed = strewn(400, 3);
     const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_LENS, .gas_reach = .5};
     const double low[3] = {0, 0, 0}, high[3] = {1, 1, 1};
-    struct mesh *mesh = mesh_new();
+    OWNED struct mesh *mesh = mesh_new();
     mesh_box(mesh, low, high, 0);
     fibrad_wall planes[6];
     for (int side = 0; side < 6; side++) planes[side] = plane_at(side / 2, side % 2, side % 2);
@@ -482,7 +461,6 @@ LOOP_TEST(contacts_with_triangles, 2) {
     assert_near(sum[1], sum[0], 1e-12);
     assert_near(square[1], square[0], 1e-12);
     for (int k = 0; k < 2; k++) free(list[k]);
-    free(mesh);
 }
 
 /* Contacts of a periodic bed of all sizes, against all pairs and images. A sphere far away, for which there are too
@@ -491,7 +469,7 @@ TEST(contacts_of_many_sizes) {
     OWNED_BED bed = strewn(400, 3);
     const fibrad_contact_rule rule = {.spots = FIBRAD_SPOTS_LENS, .gas_reach = .5};
     const fibrad_scene_config scene = {.period = {1, 1, 0}};
-    fibrad_contact_list *list = found_in(&bed, &scene, &rule);
+    OWNED fibrad_contact_list *list = found_in(&bed, &scene, &rule);
     uint32_t pairs = 0;
     double sum = 0, distances = 0;
     for (uint32_t i = 0; i < bed.n; i++)
@@ -506,13 +484,11 @@ TEST(contacts_of_many_sizes) {
     ck_assert_uint_eq(list->n, pairs);
     assert_near(distances, sum, 1e-12);
     add_sphere(&bed, .5, .5, 1e5, .01);
-    fibrad_contact_list *same = found_in(&bed, &scene, &rule);
+    OWNED fibrad_contact_list *same = found_in(&bed, &scene, &rule);
     ck_assert_uint_eq(same->n, list->n);
     ck_assert_mem_eq(same->first, list->first, list->n * sizeof *list->first);
     ck_assert_mem_eq(same->second, list->second, list->n * sizeof *list->second);
     ck_assert_mem_eq(same->distance, list->distance, list->n * sizeof *list->distance);
-    free(same);
-    free(list);
 }
 
 /* A line through a sphere, a gap and another sphere or a wall. */
@@ -540,14 +516,14 @@ LOOP_TEST(gas_between_surfaces, 10) {
     const bool wall = isinf(cases[_i].r_j), alone = cases[_i].alone;
     const double d = cases[_i].d, small = fmin(cases[_i].r_i, cases[_i].r_j),
                  large = fmax(cases[_i].r_i, cases[_i].r_j);
-    struct bed bed = bed_empty();
+    OWNED_BED bed = bed_empty();
     add_sphere(&bed, 0, 0, d, cases[_i].r_i);
     if (!wall) add_sphere(&bed, 0, 0, 0, cases[_i].r_j);
     const fibrad_wall floor = plane_at(2, 0, 0);
     const fibrad_scene_config scene = {.wall = &floor, .walls = wall};
     const fibrad_contact_rule rule = {
         .gas_reach = reach, .gas_jump = cases[_i].jump, .gas_least = least, .gas_alone = alone};
-    fibrad_contact_list *list = found_in(&bed, &scene, &rule);
+    OWNED fibrad_contact_list *list = found_in(&bed, &scene, &rule);
     const double solid[2] = {k_i, k_j};
     double h;
     ck_assert_uint_eq(list->n, 1);
@@ -566,6 +542,4 @@ LOOP_TEST(gas_between_surfaces, 10) {
     ck_assert_int_eq(gsl_integration_qags(&f, touching, end * (1 - 1e-13), 0, 1e-11, 4000, space, &truth, &error), 0);
     gsl_integration_workspace_free(space);
     ck_assert_double_le(fabs(h / truth - 1), 1e-9);
-    free(list);
-    bed_free(&bed);
 }

@@ -195,7 +195,7 @@ static void plain(const struct bed *bed, const double *e, uint32_t i, uint32_t p
                 start[axis] = o[axis] + radius * (1 + 1e-12) * n[axis];
             }
             fibrad_hit hit;
-            fibrad_trace_point_scalar(scene, start, w, FIBRAD_NO_SIDE, &hit);
+            fibrad_trace_point_scalar(scene, NULL, start, w, FIBRAD_NO_SIDE, &hit);
             if (hit.sphere == FIBRAD_NONE) break;
             uint32_t j = scene->order[hit.sphere];
             if (fibrad_random_next(&random) < e[j]) {

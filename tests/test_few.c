@@ -221,7 +221,11 @@ static int ascending(const void *a, const void *b) {
 /* So few spheres in so much space hide nothing from each other that counts. */
 TEST(dilute_rows_know_what_no_line_meets) {
     enum { N = 280 };
-    OWNED_BED bed = packing(N, 1, 1, 1e-6, 7, false);
+    const double side = 1055; /* of which spheres fill a millionth */
+    OWNED_BED bed = bed_empty();
+    for (uint64_t i = 0; i < N; i++)
+        add_sphere(&bed, side * bed_make_random(7, 3 * i), side * bed_make_random(7, 3 * i + 1),
+                   side * bed_make_random(7, 3 * i + 2), 1);
     OWNED_FACTORS *factors = factors_of(&bed, NULL, NULL);
     double ratio[N];
     int bad = 0;

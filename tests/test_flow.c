@@ -42,7 +42,7 @@ TEST(what_one_gains_others_lose) {
     OWNED_BED bed = packing(60, .6, 1, .5, 9, false);
     const fibrad_wall wall[] = {plane_at(2, 0, -1), plane_at(0, 0, -1)};
     const fibrad_plane open[] = {{0, 1, 9}, {1, 0, -2}, {1, 1, 9}, {2, 1, 9}};
-    fibrad_scene *scene =
+    OWNED fibrad_scene *scene =
         scene_with(&bed, &(fibrad_scene_config){.wall = wall, .walls = 2, .opening = open, .openings = 4});
     double e[60];
     for (int i = 0; i < 60; i++) e[i] = .4 + .01 * i;
@@ -85,7 +85,6 @@ TEST(what_one_gains_others_lose) {
     for (uint32_t i = 0; i < bed.n; i++) ck_assert_double_eq(same.power[i], 0);
     ck_assert(same.wall_power[0] == 0 && same.wall_power[1] == 0 && same.flow.surroundings_power == 0);
     free(expected), free((void *)(uintptr_t)raw.matrix);
-    free(scene);
 }
 
 /* In a closed box with spheres alone, the powers are those of the averaged matrix. */

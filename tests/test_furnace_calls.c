@@ -118,7 +118,6 @@ TEST(bad_arguments) {
     assert_invalid(fibrad_furnace_theta(furnace, 1.01));
     assert_invalid(fibrad_furnace_theta(furnace, NAN));
     assert_invalid(fibrad_furnace_theta(NULL, 1));
-    assert_invalid(fibrad_furnace_balance(NULL));
     assert_invalid(fibrad_furnace_solve(furnace, exact, 0, 10, &report));
     assert_invalid(fibrad_furnace_solve(furnace, exact, NAN, 10, &report));
     assert_invalid(fibrad_furnace_solve(furnace, no_scatter, 1, 10, &report));

@@ -75,7 +75,7 @@ TEST(work_memory_may_be_too_small) {
     trace(&p);
     assert_ok(fibrad_heat_move(p.heat, p.scene));
     size_t size = 64;
-    void *block = block_of(size);
+    OWNED void *block = block_of(size);
     fibrad_work work = work_fixed(block, size);
     int status = fibrad_heat_trace(p.heat, &work, 0);
     ck_assert_int_eq(status, FIBRAD_E_WORK);
@@ -88,7 +88,6 @@ TEST(work_memory_may_be_too_small) {
         status = fibrad_heat_trace(p.heat, &work, 0);
     }
     assert_ok(status);
-    free(block);
 }
 
 /* Bytes of the pool up to the end of the last link. */

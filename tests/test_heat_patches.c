@@ -220,7 +220,7 @@ TEST(a_patch_of_a_cylinder_is_one_place) {
         for (uint32_t k = 0; k < TURNS * UPS; k++) {
             const double turn = 2 * PI * (k / UPS + .5) / TURNS, up = (k % UPS + .5) / UPS;
             const double around[3] = {cos(turn), sin(turn), 0}, at[3] = {.3 + around[0], around[1] - .2, 2 * up - .5};
-            const uint32_t patch = fibrad_heat_wall_patch(heat, FIBRAD_CYLINDER, at) - first;
+            const uint32_t patch = fibrad_heat_wall_patch(heat, FIBRAD_CYLINDER, at, true) - first;
             if (patch >= patches) ck_abort_msg("patch %u of %u", patch, patches);
             double *m = mean[patch];
             if (round == 0) {
@@ -233,7 +233,7 @@ TEST(a_patch_of_a_cylinder_is_one_place) {
             double w[3] = {at[0] - o[0], at[1] - o[1], at[2] - o[2]};
             const double length = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
             for (int a = 0; a < 3; a++) w[a] /= length;
-            missed += fibrad_heat_leaves(heat, o, w) != first + patch;
+            missed += fibrad_heat_ends(heat, o, w, FIBRAD_NO_SIDE, 0) != first + patch;
         }
     for (uint32_t k = 0; k < patches; k++) {
         ck_assert_double_gt(mean[k][3] / (TURNS * UPS) * patches, .8 * 2 / PI);

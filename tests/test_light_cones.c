@@ -59,3 +59,24 @@ LOOP_TEST(spheres_in_wide_cones, 3) {
     ck_assert_double_le(worst, .01);
     ck_assert_int_le(10 * beyond, lit);
 }
+
+/* What a plane receives of a cone is the flux times its area, at any half-angle. A plane at a slant receives the cosine
+ * of it: the axis of the cone is its mean direction. */
+LOOP_TEST(plane_across_a_cone, 8) {
+    const double half = (const double[]){0, .01, .2, .5}[_i % 4], slant = _i < 4 ? 0 : .6;
+    OWNED_BED bed = BED({.5, .5, 3, 1e-6});
+    const fibrad_wall floor = plane_at(2, 0, 0);
+    const fibrad_scene_config scene = {.period = {1, 1, 0}, .wall = &floor, .walls = 1};
+    const fibrad_spheres spheres = spheres_of(&bed);
+    const fibrad_light light = {.direction = {sin(slant), 0, -cos(slant)}, .flux = 7, .half_angle = half};
+    const fibrad_light_sources sources = {
+        .light = &light, .lights = 1, .absorptivity = &(double){1}, .wall_absorptivity = &(double){1}};
+    double absorbed, first, wall, wall_first;
+    fibrad_light_result result = {
+        .absorbed = &absorbed, .absorbed_first = &first, .wall_absorbed = &wall, .wall_absorbed_first = &wall_first};
+    OWNED_MADE *made = NULL;
+    assert_ok(made_with(&made, &scene, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_shine(made, &sources, &result));
+    ck_assert_double_eq_tol(wall + absorbed, 7 * cos(slant), slant > 0 ? 2e-3 : 1e-9);
+    ck_assert_double_eq_tol(result.incident, wall + absorbed, 1e-12);
+}

@@ -162,8 +162,8 @@ TEST(half_angles_have_units) {
     static const char *const same[] = {"0.09", "0.09rad", "90mrad", "5.15662015618deg"};
     double absorbed[5];
     for (int k = 0; k < 5; ++k) {
-        const char *json = in_folder("h.json"), *angle = k < 4 ? same[k] : "0.01";
-        SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--json", json, "--irradiate",
+        const char *json = in_folder("h.json"), *angle = k < 4 ? same[k] : "0.4";
+        SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--directions", "50", "--json", json, "--irradiate",
                 formatted("0,0,-1:1000:disc=1,1,3,.5:half-angle=%s", angle));
         absorbed[k] = json_of(json, "absorbed_first_W");
     }

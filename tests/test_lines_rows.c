@@ -287,7 +287,7 @@ static void same_row(const fibrad_factors *a, const fibrad_factors *b, uint32_t 
 LOOP_TEST(same_bits_in_any_order, BEDS) {
     static const uint32_t chords[] = {FIBRAD_CHORDS_NONE, 16, 32, 64};
     OWNED_BED bed = beds[_i]();
-    struct bed other = bed_empty();
+    OWNED_BED other = bed_empty();
     OWNED uint64_t *id = calloc(bed.n, sizeof *id), *other_id = calloc(bed.n, sizeof *id);
     OWNED uint32_t *place = calloc(bed.n, sizeof *place);
     memcpy(other.period, bed.period, sizeof bed.period);
@@ -314,7 +314,6 @@ LOOP_TEST(same_bits_in_any_order, BEDS) {
                 for (uint32_t i = 0; i < bed.n; i++) same_row(&first.factors, &m.factors, i, place);
         }
     }
-    bed_free(&other);
 }
 
 /* The matrix does not depend on the collections that its rows lie in, nor on tasks. Collections keep the halves. */
@@ -335,8 +334,7 @@ TEST(collections_change_no_bit) {
     for (size_t at = 0; fibrad_rows_read(&all, &at, &row);) {
         assert_ok(fibrad_beam_row(scene, &work, row.sphere, &rule, &arrays));
         ck_assert(same_bits(&row, &arrays));
-        ck_assert(row.lines == fibrad_line_set_count(lines) && row.noise == arrays.noise &&
-                  row.shares == arrays.shares);
+        ck_assert(row.lines == fibrad_line_set_lines(50) && row.noise == arrays.noise && row.shares == arrays.shares);
         ck_assert_mem_eq(row.half, half, row.length * sizeof *half);
     }
     OWNED_MATRIX one = matrix_of(scene, &all, 1, NULL);
@@ -401,10 +399,8 @@ TEST(rules_have_lines_or_directions) {
                                     {.lines = lines, .chords = 17},     {.directions = 30, .points = 64, .chords = 16}};
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
         assert_invalid(fibrad_beam_row(scene, &work, 0, &bad[k], &row));
-    ck_assert_uint_eq(fibrad_line_set_count(lines), fibrad_line_set_lines(30));
-    ck_assert_uint_eq(fibrad_line_set_count(NULL), 0);
     assert_ok(fibrad_beam_row(scene, &work, 0, &(fibrad_beam_rule){.lines = lines}, &row));
-    ck_assert(row.lines == fibrad_line_set_count(lines) && row.directions == 0);
+    ck_assert(row.lines == fibrad_line_set_lines(30) && row.directions == 0);
     assert_ok(fibrad_beam_row(scene, &work, 0, NULL, &row));
     ck_assert(row.lines == 0 && row.noise == 0);
     fibrad_line_set *set = NULL;

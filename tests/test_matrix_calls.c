@@ -312,7 +312,7 @@ TEST(collections_in_fixed_memory_say_what_they_lack) {
     OWNED_ROWS plenty = rows_by_beams(scene, &rule);
     OWNED_MATRIX expected = matrix_of(scene, &plenty, 1, NULL);
     const size_t room = plenty.used + 256;
-    unsigned char *block = block_of(room + 128);
+    OWNED unsigned char *block = block_of(room + 128);
     OWNED_ROW row = row_of(bed.n);
     for (size_t offset = 0; offset < 64; offset++) {
         memset(block, 0xa5, room + 128);
@@ -351,7 +351,6 @@ TEST(collections_in_fixed_memory_say_what_they_lack) {
     fibrad_row append = {.rows = &nothing};
     ck_assert_int_eq(fibrad_beam_row(scene, &work, 0, &rule, &append), FIBRAD_E_CAPACITY);
     ck_assert_uint_gt(nothing.memory.needed, 0);
-    free(block);
 }
 
 /* Rows come back as they were appended, also empty ones. Their columns may be written. */

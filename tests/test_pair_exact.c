@@ -57,7 +57,7 @@ TEST(far_spheres_have_the_far_field) {
     ck_assert_double_le(exact(1e150, 1e-150, DBL_MAX), 0);
 }
 
-/* The polar-angle formula and the lens integral have neither the variable nor the integrand of the kernel's formula. */
+/* The lens integral has neither the variable nor the integrand of the kernel's formula. */
 TEST(quadratures_of_gsl_agree) {
     static const double radius[] = {1, 0.7, 0.1, 1e-3, 1e-4};
     static const double gap[] = {0, 1e-12, 1e-6, 1e-3, 0.1, 1, 6, 100, 1e6};
@@ -66,10 +66,6 @@ TEST(quadratures_of_gsl_agree) {
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++) {
         const double r = radius[i];
         for (size_t k = 0; k < sizeof gap / sizeof *gap; k++) {
-            ck_assert_int_eq(exact_gsl_polar(1, r, gap[k], &f12, &abserr), 0);
-            ck_assert_msg(relative(exact(1, r, gap[k]), f12) < 1e-14, "polar 1 %g %g: %.17g", r, gap[k], f12);
-            ck_assert_int_eq(exact_gsl_polar(r, 1, gap[k], &f12, &abserr), 0);
-            ck_assert_msg(relative(exact(r, 1, gap[k]), f12) < 1e-14, "polar %g 1 %g: %.17g", r, gap[k], f12);
             ck_assert_int_eq(exact_gsl_lens(1, r, gap[k], &f12, &abserr), 0);
             ck_assert_msg(relative(exact(1, r, gap[k]), f12) < 1e-14, "lens 1 %g %g: %.17g", r, gap[k], f12);
         }
@@ -79,7 +75,6 @@ TEST(quadratures_of_gsl_agree) {
                           f12);
         }
     }
-    ck_assert_int_ne(exact_gsl_polar(1, 1, -0.1, &f12, &abserr), 0);
     ck_assert_int_ne(exact_gsl_lens(1, 1, -2, &f12, &abserr), 0);
 }
 

@@ -70,7 +70,7 @@ TEST(spheres_inside_others_are_found) {
 /* Places are x[n][3] and radii are every fifth number. They give what arrays of their own give. */
 TEST(strides_change_no_bit) {
     OWNED_BED bed = packing(150, .5, 1, .4, 3, false);
-    double(*at)[3] = calloc(bed.n, sizeof *at), *r = calloc((size_t)5 * bed.n, sizeof *r);
+    OWNED double(*at)[3] = calloc(bed.n, sizeof *at), *r = calloc((size_t)5 * bed.n, sizeof *r);
     for (uint32_t k = 0; k < 5 * bed.n; k++) r[k] = NAN;
     for (uint32_t i = 0; i < bed.n; i++) at[i][0] = bed.x[i], at[i][1] = bed.y[i], at[i][2] = bed.z[i];
     for (uint32_t i = 0; i < bed.n; i++) r[(size_t)5 * i] = bed.r[i];
@@ -92,8 +92,6 @@ TEST(strides_change_no_bit) {
         for (uint32_t s = 0; s < bed.n; s++)
             ck_assert_uint_eq(fibrad_scene_sphere(scene, s), fibrad_scene_sphere(plain, s));
     }
-    free(at);
-    free(r);
 }
 
 /* A bed may be empty: this is a scene without rows, and a matrix without rows. */

@@ -81,7 +81,7 @@ static void follow(const struct bed *bed, int isa, int lists, int images, uint32
             if (dot(w, n) < 0)
                 for (int axis = 0; axis < 3; axis++) w[axis] = -w[axis];
             fibrad_hit hit, truth;
-            FIBRAD_VERSION_OF(fibrad_trace, isa)(tracer, scene->place[s], n, w, &hit);
+            FIBRAD_VERSION_OF(fibrad_trace, isa)(scene, tracer, scene->place[s], n, w, &hit);
             double o[3] = {bed->x[s] + n[0] * bed->r[s], bed->y[s] + n[1] * bed->r[s], bed->z[s] + n[2] * bed->r[s]};
             truth = try_all(bed, s, o, w, images);
             if (truth.sphere == FIBRAD_NONE && bed->period[0] > 0 && hit.distance > images * bed->period[0]) break;
@@ -158,7 +158,8 @@ TEST(one_sphere_meets_its_images) {
     follow(&bed, FIBRAD_ISA_SCALAR, FEW, 12, 200, 5);
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
     fibrad_hit hit;
-    fibrad_trace_point_scalar(scene, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, FIBRAD_NO_SIDE, &hit);
+    fibrad_trace_point_scalar(scene, NULL, (const double[3]){1.3, 1.65, 0}, (const double[3]){0, 0, 1}, FIBRAD_NO_SIDE,
+                              &hit);
     ck_assert_uint_eq(hit.sphere, FIBRAD_NONE);
 }
 
@@ -175,16 +176,16 @@ TEST(a_stray_sees_and_is_seen) {
     uint32_t outer = 0;
     for (uint32_t i = 0; i < 200; i++)
         if (bed.x[i] + bed.r[i] > most) most = bed.x[i] + bed.r[i], outer = i;
-    fibrad_trace_scalar(tracer, scene->place[outer], right, right, &hit);
+    fibrad_trace_scalar(scene, tracer, scene->place[outer], right, right, &hit);
     ck_assert_uint_eq(scene->order[hit.sphere], 200);
     ck_assert_double_eq_tol(hit.distance, 3.9e6, 100);
     uint32_t seen = 0;
     for (uint32_t k = 0; k < 20; k++) {
         double point[3] = {4e6, bed.y[k], bed.z[k]};
-        fibrad_trace_point_scalar(scene, point, left, FIBRAD_NO_SIDE, &hit);
+        fibrad_trace_point_scalar(scene, NULL, point, left, FIBRAD_NO_SIDE, &hit);
         ck_assert_uint_eq(scene->order[hit.sphere], 200); /* it starts inside */
         point[0] = 3e6;
-        fibrad_trace_point_scalar(scene, point, left, FIBRAD_NO_SIDE, &hit);
+        fibrad_trace_point_scalar(scene, NULL, point, left, FIBRAD_NO_SIDE, &hit);
         seen += hit.sphere != FIBRAD_NONE;
     }
     ck_assert_uint_eq(seen, 20);
@@ -200,7 +201,7 @@ TEST(rays_from_any_point_meet_the_nearest) {
             even(&random, w);
             for (int axis = 0; axis < 3; axis++) o[axis] = (fibrad_random_next(&random) * 1.6 - .3) * bed.high[axis];
             fibrad_hit hit, truth = try_all(&bed, FIBRAD_NONE, o, w, 3);
-            fibrad_trace_point_scalar(scene, o, w, FIBRAD_NO_SIDE, &hit);
+            fibrad_trace_point_scalar(scene, NULL, o, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_int_eq(hit.sphere == FIBRAD_NONE, truth.sphere == FIBRAD_NONE);
             if (hit.sphere == FIBRAD_NONE) continue;
             ck_assert_uint_eq(scene->order[hit.sphere], truth.sphere);
@@ -226,11 +227,11 @@ LOOP_TEST(rays_from_cells_meet_what_others_meet, 3) {
         ck_assert_double_le(dot(start, start), 1);
         listed += list != NULL;
         fibrad_hit truth = {0};
-        fibrad_trace_point_scalar(scene, o, w, FIBRAD_NO_SIDE, &truth);
+        fibrad_trace_point_scalar(scene, NULL, o, w, FIBRAD_NO_SIDE, &truth);
         met += truth.sphere != FIBRAD_NONE;
         for (int v = 0; v < isas.count; v++) {
             fibrad_hit hit = {0};
-            FIBRAD_VERSION_OF(fibrad_trace_wall, isas.set[v])(tracer, o, w, FIBRAD_NO_SIDE, &hit);
+            FIBRAD_VERSION_OF(fibrad_trace_point, isas.set[v])(scene, tracer, o, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_mem_eq(&hit, &truth, sizeof hit);
         }
     }
@@ -244,7 +245,7 @@ static double length_along_x(fibrad_tracer *tracer, bool *kept) {
     const uint32_t place = tracer->scene->place[0];
     fibrad_hit hit;
     *kept = tracer->owner[place & (tracer->lists - 1)] == place;
-    fibrad_trace_scalar(tracer, place, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
+    fibrad_trace_scalar(tracer->scene, tracer, place, (const double[3]){1, 0, 0}, (const double[3]){1, 0, 0}, &hit);
     return hit.distance;
 }
 
@@ -285,9 +286,9 @@ TEST(ids_decide_what_is_met_first) {
             fibrad_tracer *tracer = tracer_of(scene, EACH, &work);
             const double first = lower == 0 ? .5 : -.5;
             fibrad_hit hit;
-            fibrad_trace_scalar(tracer, scene->place[2], w, w, &hit);
+            fibrad_trace_scalar(scene, tracer, scene->place[2], w, w, &hit);
             ck_assert_double_eq(hit.centre[1], first);
-            fibrad_trace_point_scalar(scene, (const double[3]){1, 0, 0}, w, FIBRAD_NO_SIDE, &hit);
+            fibrad_trace_point_scalar(scene, NULL, (const double[3]){1, 0, 0}, w, FIBRAD_NO_SIDE, &hit);
             ck_assert_double_eq(hit.centre[1], first);
         }
 }

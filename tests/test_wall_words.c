@@ -107,14 +107,10 @@ static const struct {
              {"ycylinder:1,2,0", "ycylinder: needs X,Z,R"},
              {"cylinder:1,2,3,4", "cylinder: needs X,Y,R"},
              {"cylinder:1,b,3", "cylinder: needs X,Y,R"},
-             {"zmin=0.1", "zmin=0.1 is now zmin:at=0.1"},
-             {"zmax=open", "zmax=open is now zmax:open"},
-             {"zhi=open,.06", "zhi=open,.06 is now zhi:open:at=.06"},
-             {"zmax=60:open", "zmax=60:open is now zmax:open:at=60"},
-             {"box:open=zmax", "box: open=zmax is now another wall: box,zmax:open"},
-             {"tub=mesh:a.stl", "tub=mesh:FILE is now mesh:FILE:name=tub"},
-             {"zlo=1200,0.9", "zlo=1200,0.9 is now zlo:temperature=T:emissivity=E"},
-             {"cylinder=600,.9,0,0,1", "cylinder=600,.9,0,0,1 is now cylinder:X,Y,R:temperature=T:emissivity=E"}};
+             {"box:open=zmax", "box: 'open' is of no use here"},
+             {"zmin=0.1", "zmin=0.1 is not how a wall is written: zmin:at=VALUE:temp"},
+             {"tub=mesh:a.stl", "tub=mesh is not how"},
+             {"cylinder=600,.9,0,0,1", "cylinder=600,.9,0,0,1 is not how"}};
 
 LOOP_TEST(wrong_walls, sizeof wrong / sizeof *wrong) {
     struct wall_words wall[MOST];

@@ -129,7 +129,7 @@ TEST(one_work_serves_all_scenes_and_functions) {
     fibrad_work growing = work_growing(), fixed = work_fixed(block, size), little = work_fixed(NULL, 0);
     OWNED_BY(output_free) struct output out = output_of();
     uint32_t at = 0;
-    for (int round = 0; round < 200; round++) {
+    for (int round = 0; round < 100; round++) {
         at = at * 1664525u + 1013904223u;
         const int k = (int)((at >> 29) % SCENES), function = (int)((at >> 20) % FUNCTIONS);
         const uint32_t i = (at >> 8) % bed[k].n;
@@ -269,4 +269,69 @@ TEST(the_bytes_of_the_header_are_enough) {
         }
     }
     for (int k = 0; k < 4; k++) free(scenes[k]);
+}
+
+/* A block of size 0 is too small. NULL that is said to have bytes is refused. */
+TEST(blocks_of_size_zero_are_too_small) {
+    OWNED_BED bed = strewn(50, 9);
+    OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_BEST);
+    OWNED_WORK work = work_growing();
+    const fibrad_beam_rule rule = {.directions = 20};
+    OWNED_ROW row = row_of(50);
+    double byte;
+    for (int k = 0; k < 3; k++) { /* no block yet; a block; NULL that is said to have bytes */
+        const fibrad_memory memory = {.block = k == 1 ? &byte : NULL, .size = k == 2 ? 1 << 20 : 0};
+        fibrad_work little = {.memory = memory};
+        fibrad_rows rows = {.memory = memory};
+        fibrad_row append = {.rows = &rows};
+        ck_assert_int_eq(fibrad_beam_row(scene, &little, 1, &rule, &row), k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_WORK);
+        ck_assert_int_eq(fibrad_beam_row(scene, &work, 1, &rule, &append),
+                         k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
+        if (k < 2) ck_assert(little.memory.needed > 0 && rows.memory.needed > 0);
+        assert_ok(fibrad_beam_row(scene, &work, 1, &rule, &row));
+        ck_assert_int_eq(fibrad_rows_add(&rows, &row, 0), k == 2 ? FIBRAD_E_ARGUMENT : FIBRAD_E_CAPACITY);
+    }
+}
+
+/* Arrays are too small. With the length that the row of each method says, the next call succeeds. Until then nothing is
+ * written. */
+static void ask_and_repeat(const fibrad_scene *scene, const fibrad_beam_rule *beam,
+                           const fibrad_exchange_rule *exchange) {
+    enum { LONGEST = 100 };
+    OWNED_WORK work = work_growing();
+    fibrad_rows rows = {0};
+    fibrad_row append = {.rows = &rows};
+    uint32_t col[LONGEST];
+    double f[LONGEST], wall[1];
+    for (int k = 0; k < LONGEST; k++) col[k] = 7, f[k] = -7;
+    wall[0] = -7;
+    fibrad_row row = {.col = col, .f = f, .wall = wall};
+    for (uint32_t tries = 0; tries < 2; tries++) {
+        const int expected = tries == 0 ? FIBRAD_E_CAPACITY : FIBRAD_OK;
+        ck_assert_int_eq(beam ? fibrad_beam_row(scene, &work, 0, beam, &row)
+                              : fibrad_exchange_row(scene, &work, 0, exchange, &row, NULL),
+                         expected);
+        if (tries == 1) ck_assert_uint_eq(row.length, row.capacity);
+        for (int k = tries == 0 ? 0 : (int)row.length; k < LONGEST; k++) ck_assert(col[k] == 7 && f[k] == -7);
+        if (tries == 0) ck_assert(wall[0] == -7 && row.error == 0 && row.escaped == 0);
+        row.capacity = row.length;
+        ck_assert_int_eq(beam ? fibrad_beam_row(scene, &work, 0, beam, &append)
+                              : fibrad_exchange_row(scene, &work, 0, exchange, &append, NULL),
+                         tries < 1 ? FIBRAD_E_CAPACITY : expected);
+        if (tries == 0) rows.memory.size = rows.memory.needed, rows.memory.block = malloc(rows.memory.size);
+    }
+    free(rows.memory.block);
+}
+
+TEST(the_length_that_is_asked_for_suffices) {
+    OWNED_BED bed = packing(100, .5, 1.5, .3, 4, false);
+    const fibrad_wall floor = plane_at(2, 0, -100);
+    OWNED fibrad_scene *scene = scene_with(&bed, &(fibrad_scene_config){.wall = &floor, .walls = 1});
+    double emissivity[100];
+    for (int i = 0; i < 100; i++) emissivity[i] = .2;
+    fibrad_exchange_rule exchange = {.emissivity = emissivity, .wall_emissivity = &(double){.5}, .directions = 8};
+    ask_and_repeat(scene, &(fibrad_beam_rule){.directions = 8, .tolerance = 1e-3}, NULL);
+    ask_and_repeat(scene, NULL, &exchange);
+    for (int i = 1; i < 100; i += 2) emissivity[i] = 0; /* the first segment sees it, and there are no entries */
+    ask_and_repeat(scene, NULL, &exchange);
 }

@@ -74,11 +74,6 @@ static void wrap_and_fill(struct cells *cells, struct bed *bed, double edge) {
     fill_cells(cells, bed, edge);
 }
 
-/* Moves spheres that reach beyond the faces z = 0 and z = edge back to these faces. */
-static void move_between(struct bed *bed, double edge) {
-    for (uint32_t i = 0; i < bed->n; ++i) bed->z[i] = fmin(fmax(bed->z[i], bed->r[i]), edge - bed->r[i]);
-}
-
 static bool sweep_cells(struct bed *bed, double edge, struct cells *cells) {
     bool overlap = false;
     wrap_and_fill(cells, bed, edge);
@@ -97,16 +92,28 @@ static bool sweep_cells(struct bed *bed, double edge, struct cells *cells) {
     return overlap;
 }
 
-/* What pack() does: at most `sweeps` sweeps. layer: the spheres lie between two faces across z instead of a period. */
-struct pushing {
-    uint32_t sweeps;
-    bool layer;
-    bool apart; /* out: no spheres overlap */
-};
+/* Pushes spheres in a periodic cube apart by at most `sweeps` sweeps. The cells are at least `width` wide. *apart: no
+ * spheres overlap. */
+static int push_all(struct bed *bed, double edge, double width, bool sweep(struct bed *, double, struct cells *),
+                    uint32_t sweeps, bool *apart) {
+    struct cells cells = {.side = (uint32_t)fmax(1, floor(edge / width))};
+    cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
+    cells.next = malloc(bed->n * sizeof *cells.next);
+    int status = cells.first && cells.next ? STATUS_OK : message_memory();
+    *apart = false;
+    for (uint32_t round = 0; round < sweeps && !status && !*apart; ++round) {
+        *apart = !sweep(bed, edge, &cells);
+        status = interrupt_status();
+    }
+    free(cells.first);
+    free(cells.next);
+    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
+    return status;
+}
 
 /* Puts spheres at random and pushes them apart. */
-static int pack(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed,
-                struct pushing *pushing) {
+static int pack(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed, uint32_t sweeps,
+                bool *apart) {
     double volume = 0, largest = 0;
     for (uint32_t i = 0; i < n; ++i) {
         const double r = low + (high - low) * bed_make_random(seed, 4 * (uint64_t)i);
@@ -121,101 +128,18 @@ static int pack(struct bed *bed, uint32_t n, double low, double high, double fra
         bed->y[i] = edge * bed_make_random(seed, 4 * (uint64_t)i + 2);
         bed->z[i] = edge * bed_make_random(seed, 4 * (uint64_t)i + 3);
     }
-    struct cells cells = {.side = (uint32_t)fmax(1, floor(edge / (2 * largest)))};
-    cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
-    cells.next = malloc(n * sizeof *cells.next);
-    int status = cells.first && cells.next ? STATUS_OK : message_memory();
-    pushing->apart = false;
-    for (uint32_t round = 0; round < pushing->sweeps && !status && !pushing->apart; ++round) {
-        if (pushing->layer) move_between(bed, edge);
-        pushing->apart = !sweep_cells(bed, edge, &cells);
-        status = interrupt_status();
-    }
-    if (pushing->layer) move_between(bed, edge);
-    free(cells.first);
-    free(cells.next);
-    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
-    return status;
+    return push_all(bed, edge, 2 * largest, sweep_cells, sweeps, apart);
 }
 
 int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, double fraction, uint64_t seed) {
-    struct pushing pushing = {.sweeps = SWEEPS};
-    const int status = pack(bed, n, low, high, fraction, seed, &pushing);
-    if (status || pushing.apart) return status;
-    return message(STATUS_INPUT, "cannot pack %u spheres to %g of solid", n, fraction);
+    bool apart;
+    const int status = pack(bed, n, low, high, fraction, seed, SWEEPS, &apart);
+    return status || apart ? status : message(STATUS_INPUT, "cannot pack %u spheres to %g of solid", n, fraction);
 }
 
 int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed) {
-    struct pushing pushing = {.sweeps = sweeps};
-    return pack(bed, n, 1, 1, fraction, seed, &pushing);
-}
-
-/* Whether unit sphere i at `at` would overlap another one. */
-static bool would_overlap(const struct bed *bed, uint32_t i, const double at[3]) {
-    const double *const centre[3] = {bed->x, bed->y, bed->z};
-    bool overlap = false;
-    for (uint32_t j = 0; j < bed->n && !overlap; ++j) {
-        double square = 0;
-        for (int a = 0; a < 3 && square < 4; ++a) {
-            const double e = fabs(centre[a][j] - at[a]);
-            const double nearest = e > bed->period[a] / 2 && bed->period[a] > 0 ? bed->period[a] - e : e;
-            square += nearest * nearest;
-        }
-        overlap = j != i && square < 4;
-    }
-    return overlap;
-}
-
-/* Moves each unit sphere once by up to STEP along each axis, if it stays apart from others and between faces. */
-#define STEP   .4
-#define SHAKES 100
-static void shake(struct bed *bed, uint64_t seed, uint64_t sweep) {
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
-        bool inside = true;
-        for (int a = 0; a < 3; ++a) {
-            at[a] += STEP * (2 * bed_make_random(seed, 3 * (sweep * bed->n + i) + (uint64_t)a) - 1);
-            if (bed->period[a] > 0)
-                at[a] -= bed->period[a] * floor(at[a] / bed->period[a]);
-            else
-                inside = inside && at[a] >= 1 && at[a] <= bed->high[a] - 1;
-        }
-        if (!inside || would_overlap(bed, i, at)) continue;
-        bed->x[i] = at[0];
-        bed->y[i] = at[1];
-        bed->z[i] = at[2];
-    }
-}
-
-static int shake_all(struct bed *bed, uint32_t sweeps, uint64_t seed) {
-    int status = STATUS_OK;
-    for (uint32_t sweep = 0; sweep < sweeps && !status; ++sweep) {
-        shake(bed, seed, sweep);
-        status = interrupt_status();
-    }
-    return status;
-}
-
-int bed_make_layer(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed) {
-    struct pushing pushing = {.sweeps = sweeps, .layer = true};
-    const int status = pack(bed, n, 1, 1, fraction, seed, &pushing);
-    bed->period[2] = 0;
-    return status ? status : shake_all(bed, SHAKES, seed);
-}
-
-int bed_make_shaken(struct bed *bed, uint32_t cells, double fraction, uint64_t seed) {
-    static const double site[4][3] = {{0, 0, 0}, {.5, .5, 0}, {.5, 0, .5}, {0, .5, .5}};
-    const double cell = cbrt(16 * PI / 3 / fraction);
-    int status = STATUS_OK;
-    for (uint32_t k = 0; k < 4 * cells * cells * cells && !status; ++k) {
-        const double *at = site[k % 4];
-        status = bed_add(bed, &(struct bed_sphere){.x = cell * (k / 4 % cells + at[0]),
-                                                   .y = cell * (k / 4 / cells % cells + at[1]),
-                                                   .z = cell * (k / 4 / cells / cells + at[2]),
-                                                   .r = 1});
-    }
-    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = cells * cell;
-    return status ? status : shake_all(bed, SHAKES, seed);
+    bool apart;
+    return pack(bed, n, 1, 1, fraction, seed, sweeps, &apart);
 }
 
 /* A sweep for spheres of very different sizes. Cells are as wide as the smallest sphere. Of each pair the larger sphere
@@ -256,19 +180,10 @@ int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fra
                                                              .r = i < large ? ratio : 1});
         if (status) return status;
     }
-    struct cells cells = {.side = (uint32_t)fmax(1, floor(edge / 2))};
-    cells.first = malloc((size_t)cells.side * cells.side * cells.side * sizeof *cells.first);
-    cells.next = malloc(n * sizeof *cells.next);
-    int status = cells.first && cells.next ? STATUS_OK : message_memory();
-    for (uint32_t round = 0; !status && sweep_by_size(bed, edge, &cells); ++round) {
-        status = interrupt_status();
-        if (round == SWEEPS)
-            status = message(STATUS_INPUT, "cannot pack spheres of two sizes to %g of solid", fraction);
-    }
-    free(cells.first);
-    free(cells.next);
-    for (int axis = 0; axis < 3; ++axis) bed->period[axis] = bed->high[axis] = edge;
-    return status;
+    bool apart;
+    const int status = push_all(bed, edge, 2, sweep_by_size, SWEEPS, &apart);
+    return status || apart ? status
+                           : message(STATUS_INPUT, "cannot pack spheres of two sizes to %g of solid", fraction);
 }
 
 int bed_make_copies(struct bed *to, const struct bed *from, const uint32_t copies[3]) {

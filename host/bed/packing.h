@@ -17,17 +17,6 @@ int bed_make_packing(struct bed *bed, uint32_t n, double low, double high, doubl
  */
 int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed);
 
-/* As bed_make_jammed, as a layer: a cube that is periodic in x and y, with two faces, z = 0 and z = bed->high[2], that
- * no sphere crosses. bed->period[2] is 0. `fraction` is the solid fraction of the whole cube. The fraction near the
- * faces differs from that in the middle. In the end the spheres are shaken, as in bed_make_shaken. */
-int bed_make_layer(struct bed *bed, uint32_t n, double fraction, uint32_t sweeps, uint64_t seed);
-
-/* Fills an empty bed with 4 cells^3 unit spheres at a solid fraction. They begin on a face-centred cubic lattice. Then
- * each sphere tries 100 random moves. A move that would overlap another sphere is not made. Up to a solid fraction of
- * about 0.5 the bed is then a fluid of hard spheres, which has fewer contacts than a bed that was pushed apart. At
- * larger fractions the bed keeps some of the order of the lattice. Status 0, STATUS_MEMORY, or that of a signal. */
-int bed_make_shaken(struct bed *bed, uint32_t cells, double fraction, uint64_t seed);
-
 /* As bed_make_packing, with spheres of two sizes: `large` spheres of radius `ratio`, which come first, and spheres of
  * radius 1 with the same volume in all. */
 int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fraction, uint64_t seed);

@@ -205,7 +205,15 @@ static int check_axes(const struct walls *walls, const struct bed *bed) {
     return STATUS_OK;
 }
 
-/* Whether walls end along an axis. */
+bool walls_close(const struct walls *walls, const struct bed *bed, int side) {
+    const fibrad_wall *cylinder = cylinder_among(walls);
+    if (bed->period[side / 2] > 0 || (cylinder && wall_across(cylinder, side / 2))) return true;
+    for (uint32_t k = 0; k < walls->count; ++k)
+        if (walls->wall[k].kind == FIBRAD_WALL_PLANE && plane_number(&walls->wall[k].plane) == side) return true;
+    return false;
+}
+
+/* Whether walls or openings end along an axis. */
 static bool is_closed(const struct walls *walls, const struct bed *bed, int axis) {
     const bool both = plane_of_side(walls, 2 * axis) && plane_of_side(walls, 2 * axis + 1);
     const fibrad_wall *cylinder = cylinder_among(walls);

@@ -81,6 +81,9 @@ void walls_free(struct wall_options *options);
  * line of a sphere whose centre lies beyond a plane or a cylinder. */
 int walls_of(const struct wall_options *options, const struct bed *bed, const char *file, struct walls *walls);
 
+/* Whether a period, a plane or the cylinder closes a side, x low 0 to z high 5. */
+bool walls_close(const struct walls *walls, const struct bed *bed, int side);
+
 /* Whether no radiation can escape. Either a closed mesh encloses the bed, or there are no openings, and each axis is
  * periodic, has walls at both ends, or lies across the cylinder. */
 bool walls_closed(const struct walls *walls, const struct bed *bed);

@@ -168,8 +168,6 @@ static bool take_key(struct wall_words *wall, const struct key *key, const char 
                      char fault[WALL_FAULT]) {
     const unsigned earlier = wall->given & (key->bit | key->excludes);
     void *field = (char *)wall + key->field;
-    if (key->bit == WALL_OPEN && wall->shape == WALL_BOX && value)
-        return refuse(wall, fault, "open=%.40s is now another wall: box,%.40s:open", value, value);
     if (!(key->bit & allowed) || (key->of != WALL_NONE && key->of != wall->shape))
         return no_key(wall, key->name, allowed, fault);
     if (earlier) {
@@ -236,29 +234,16 @@ static char cut_item(char **text) {
     return stop;
 }
 
-/* A shape with a value, as walls had them before 0.3.0. rest: what follows it. Says how it is written now. */
-static bool refuse_old(const char *item, const char *rest, char fault[WALL_FAULT]) {
-    const int length = (int)strcspn(item, "=");
-    const char *value = item + length + 1;
-    if (strcmp(value, "mesh") == 0)
-        snprintf(fault, WALL_FAULT, "%.60s:FILE is now mesh:FILE:name=%.*s", item, length, item);
-    else if (strncmp(value, "open", 4) == 0)
-        snprintf(fault, WALL_FAULT, "%.60s is now %.*s:open%s%.40s", item, length, item, value[4] ? ":at=" : "",
-                 value + 4 + (value[4] != 0));
-    else if (strchr(value, ','))
-        snprintf(fault, WALL_FAULT, "%.60s is now %.*s%s:temperature=T:emissivity=E", item, length, item,
-                 strstr(item, "cylinder") ? ":X,Y,R" : "");
-    else if (strncmp(rest, "open", 4) == 0)
-        snprintf(fault, WALL_FAULT, "%.60s:open is now %.*s:open:at=%.40s", item, length, item, value);
-    else
-        snprintf(fault, WALL_FAULT, "%.60s is now %.*s:at=%.40s", item, length, item, value);
-    return false;
-}
-
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]) {
     char *item = *text, *number[3];
     char stop = cut_item(text);
-    if (strchr(item, '=')) return refuse_old(item, stop == ':' ? *text : "", fault);
+    if (strchr(item, '=')) { /* as walls had them before 0.3.0 */
+        snprintf(fault, WALL_FAULT,
+                 "%.60s is not how a wall is written: zmin:at=VALUE:temperature=T:emissivity=E, zmax:open, "
+                 "cylinder:X,Y,R and mesh:FILE:name=NAME are",
+                 item);
+        return false;
+    }
     if (!begin_wall(wall, item, allowed, fault)) return false;
     if (shape_words(wall) > 0) {
         int count = stop == ':';

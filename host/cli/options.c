@@ -246,31 +246,3 @@ int option_points(const char *text, void *points) {
     *(uint32_t *)points = (uint32_t)strtoul(text, NULL, 10);
     return STATUS_OK;
 }
-
-const char *const method_names[5] = {"exact", "beam", "surface", "cast", "mc"};
-
-int option_method(const char *text, void *method) {
-    for (int k = 0; k < 5; ++k)
-        if (strcmp(text, method_names[k]) == 0) {
-            *(enum method *)method = (enum method)k;
-            return STATUS_OK;
-        }
-    return message(STATUS_USAGE, "--method: '%.40s' is not a method", text);
-}
-
-int methods_check(struct method_options *m) {
-    const bool exact = m->areas && strcmp(m->areas, "exact") == 0, points = m->areas && strcmp(m->areas, "points") == 0;
-    const bool cast = m->method == METHOD_CAST || m->method == METHOD_MC;
-    if (m->areas && !exact && !points)
-        return message(STATUS_USAGE, "--areas: '%.40s' is neither exact nor points", m->areas);
-    if ((m->beam.directions || m->beam.points || m->areas) && m->method != METHOD_BEAM)
-        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
-    if ((m->cast.rays || m->seed) && !cast)
-        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
-    if (exact && m->beam.points) return message(STATUS_USAGE, "--points contradicts --areas exact");
-    if (exact) m->beam.chords = FIBRAD_CHORDS_NONE;
-    if (points && !m->beam.points) m->beam.points = 256;
-    if (!m->cast.rays) m->cast.rays = FIBRAD_RAYS_DEFAULT;
-    m->cast.random = m->method == METHOD_MC;
-    return m->seed ? options_whole("--seed", m->seed, 0, UINT64_MAX, &m->cast.seed) : STATUS_OK;
-}

@@ -94,43 +94,4 @@ int options_numbers(const char *what, const char *text, int capacity, double *va
 /* Takes the argument of --points, 64, 128 or 256, into a uint32_t. */
 int option_points(const char *text, void *points);
 
-/* ---- methods of view factors ---- */
-
-/* Methods by name, in the order of the enum. */
-enum method { METHOD_EXACT, METHOD_BEAM, METHOD_SURFACE, METHOD_CAST, METHOD_MC };
-
-/* What the options of methods say. 0 or NULL: not given. */
-struct method_options {
-    enum method method;
-    fibrad_beam_rule beam;
-    fibrad_cast_rule cast;
-    const char *areas, *seed;
-};
-
-int option_method(const char *text, void *method);
-
-/* Rows of the options, with braces, for a request with a field `methods`. The rows of --method and --directions are the
- * command's. */
-#define OPTIONS_METHODS(request)                                                                                       \
-    {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",          \
-     TO_TEXT(request, methods.areas)},                                                                                 \
-        {0, "points", "M",                                                                                             \
-         "beam: rays along each direction, 64, 128 or 256; along lines masks of 16, 32 or 64 chords; implies --areas " \
-         "points [256]",                                                                                               \
-         TO_FUNCTION(option_points, request, methods.beam.points)},                                                    \
-        {0, "rays", "N",                                                                                               \
-         "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [" TEXT_OF(                    \
-             FIBRAD_RAYS_DEFAULT) "; exchange factors 400 paths]",                                                     \
-         TO_COUNT(request, methods.cast.rays, 1, UINT32_MAX)},                                                         \
-    {                                                                                                                  \
-        0, "seed", "S", "cast, mc, and exchange factors: seed of the rays [0]", TO_TEXT(request, methods.seed)         \
-    }
-
-/* The names of methods, by enum method. */
-extern const char *const method_names[5];
-
-/* Completes the rules when all options have been read. Directions that are not given stay 0. Refuses options of other
- * methods, and those that contradict each other. Status 0 or STATUS_USAGE. */
-int methods_check(struct method_options *methods);
-
 #endif

@@ -13,17 +13,6 @@ double progress_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* The bar appears if standard error is a terminal, or if `forced`. */
-static void progress_begin(struct progress *progress, bool forced, const char *what, uint64_t total) {
-    const double now = progress_clock();
-    *progress = (struct progress){.forced = forced,
-                                  .on = forced || isatty(STDERR_FILENO),
-                                  .what = what,
-                                  .total = total,
-                                  .begun = now,
-                                  .shown = now};
-}
-
 static void draw_bar(const struct progress *progress, uint64_t done, double now) {
     enum { WIDTH = 30 };
     const double passed = now - progress->begun;
@@ -43,38 +32,27 @@ static void draw_bar(const struct progress *progress, uint64_t done, double now)
     fflush(stderr);
 }
 
-void progress_show(struct progress *progress, uint64_t done) {
-    progress->done = done;
-    if (!progress->on) return;
-    const double now = progress_clock();
-    if (now - progress->shown < 0.1) return;
-    progress->shown = now;
-    draw_bar(progress, done, now);
-}
-
-void progress_end(struct progress *progress, uint64_t done) {
-    if (!progress->on) return;
-    if (isatty(STDERR_FILENO)) {
-        fprintf(stderr, "\r%80s\r", "");
-    } else {
-        draw_bar(progress, done, progress_clock());
-        fputc('\n', stderr);
-    }
-    progress->on = false;
-}
-
 int progress_stage(void *context, const char *stage, uint64_t done, uint64_t total) {
     struct progress *progress = context;
-    if (progress->quiet) return interrupt_status() != 0;
+    const double now = progress_clock();
     if (done == 0) {
         progress_stop(progress);
-        progress_begin(progress, progress->forced, stage, total);
+        *progress = (struct progress){.quiet = progress->quiet,
+                                      .on = !progress->quiet && isatty(STDERR_FILENO),
+                                      .what = stage,
+                                      .total = total,
+                                      .begun = now,
+                                      .shown = now};
     }
-    if (total > 0 && done == total)
-        progress_end(progress, done);
-    else
-        progress_show(progress, done);
+    if (total > 0 && done == total) progress_stop(progress);
+    if (progress->on && now - progress->shown >= 0.1) {
+        progress->shown = now;
+        draw_bar(progress, done, now);
+    }
     return interrupt_status() != 0;
 }
 
-void progress_stop(struct progress *progress) { progress_end(progress, progress->done); }
+void progress_stop(struct progress *progress) {
+    if (progress->on) fprintf(stderr, "\r%80s\r", "");
+    progress->on = false;
+}

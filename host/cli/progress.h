@@ -6,23 +6,15 @@
 #include <stdint.h>
 
 struct progress {
-    bool forced;      /* for progress_stage: show the bar also if standard error is no terminal */
-    bool quiet;       /* for progress_stage: never show the bar */
+    bool quiet;       /* never show the bar */
     bool on;          /* the bar is shown */
     const char *what; /* name of the things counted, in the plural */
     uint64_t total;
-    uint64_t done;
     double begun, shown; /* times of the beginning and of the last drawing [s] */
 };
 
-/* Draws the bar, at most ten times a second. For one thread only. */
-void progress_show(struct progress *progress, uint64_t done);
-
-/* Ends the bar: erases it on a terminal, prints its last state elsewhere. */
-void progress_end(struct progress *progress, uint64_t done);
-
-/* A fibrad_progress whose context is a struct progress. Each stage has a bar, or a count if its length is not known.
- * Returns not 0, to stop the library, after a signal. */
+/* A fibrad_progress whose context is a struct progress, for one thread. Each stage has a bar on a terminal, or a count
+ * if its length is not known, at most ten times a second. Returns not 0, to stop the library, after a signal. */
 int progress_stage(void *progress, const char *stage, uint64_t done, uint64_t total);
 
 /* Ends a bar that is still shown, as after an error. */

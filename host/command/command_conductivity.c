@@ -1,5 +1,6 @@
 /* command_conductivity.c - `fibrad conductivity`: effective radiative conductivity of a bed of grey spheres.
  * SPDX-License-Identifier: MIT */
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,6 +76,7 @@ static const struct option conductivity_table[] = {
     {.name = NULL}};
 
 static int conductivity_help(void) {
+    static_assert(CONDUCTION_MARGIN == 4 && CONDUCTION_MARGIN_WALK == 8, "the text has these numbers");
     options_help(
         "conductivity",
         "fibrad conductivity FILE... --emissivity E [options]\n\n"
@@ -85,15 +87,10 @@ static int conductivity_help(void) {
         (const char *const[]){
             FILES_MORE, WALLS_MORE,
             "F_E is found with temperatures that rise linearly along the axis. All spheres absorb. Along open axes\n"
-            "only spheres deep inside the bed emit, " TEXT_OF(
-                CONDUCTION_MARGIN) " mean diameters or more from the "
-                                   "outermost centres\n(" TEXT_OF(
-                                       CONDUCTION_MARGIN_WALK) " with --solid-conductivity). With --axis, the bed may "
-                                                               "be too thin for this along another\naxis. Spheres at "
-                                                               "any place along that other axis then emit. Where "
-                                                               "a periodic bed has gaps, flights may\nbe so long that "
-                                                               "F_E does not exist, or that its standard error "
-                                                               "cannot be estimated. Then there is a\nwarning.\n",
+            "only spheres deep inside the bed emit, 4 mean diameters or more from the outermost centres (8 with\n"
+            "--solid-conductivity). With --axis, the bed may be too thin for this along another axis. Spheres at any\n"
+            "place along that other axis then emit. Where a periodic bed has gaps, flights may be so long that F_E\n"
+            "does not exist, or that its standard error cannot be estimated. Then there is a warning.\n",
             "A bed in a container loses radiation through its sides, unless --wall has them: F_E is then that of a\n"
             "tube or a box that goes on along the axis, over the area within the walls. Walls reflect diffusely.\n",
             "Standard output ends with lines `key value`. F_E_x, F_E_y and F_E_z are the exchange factors.\n"

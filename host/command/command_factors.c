@@ -14,11 +14,18 @@
 #include "simple/bed.h"
 #include "write/write.h"
 
+/* Methods of view factors by name, in the order of the enum. */
+enum method { METHOD_BEAM, METHOD_CAST, METHOD_MC, METHODS };
+static const char *const method_names[METHODS] = {"beam", "cast", "mc"};
+
 struct factors_request {
     struct bed_options bed;
     const char *targets;
-    struct method_options methods;
-    double cutoff, error; /* 0: none */
+    enum method method;
+    fibrad_beam_rule beam; /* 0: not given */
+    fibrad_cast_rule cast;
+    const char *areas, *seed; /* NULL: not given */
+    double cutoff, error;     /* 0: none */
     struct quantity emissivity, solid, temperature;
     double zero; /* 0 of the unit of temperature [K] */
     bool raw;
@@ -27,12 +34,25 @@ struct factors_request {
     fibrad_bed_rule options;
 };
 
+static int take_method(const char *text, void *method) {
+    for (int k = 0; k < METHODS; ++k)
+        if (strcmp(text, method_names[k]) == 0) {
+            *(enum method *)method = (enum method)k;
+            return STATUS_OK;
+        }
+    return message(STATUS_USAGE, "--method: '%.40s' is none of beam, cast and mc; fibrad pair has exact and surface",
+                   text);
+}
+
 /* Takes the argument of --targets, unless it is `all`. */
 static int take_targets(const char *text, void *targets) {
     const bool all = strcmp(text, "all") == 0;
     *(const char **)targets = all ? NULL : text;
     return all ? STATUS_OK : targets_mark(text, NULL, 0, "", NULL);
 }
+
+#define LINES_USED    TEXT_OF(FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(FIBRAD_LINES_AMONG_WALLS) " among walls"
+#define EXCHANGE_USED TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT)
 
 static const struct option factors_table[] = {
     {OPTION_EMISSIVITY(struct factors_request, emissivity)},
@@ -43,7 +63,7 @@ static const struct option factors_table[] = {
      "from 1e-5 on [none]",
      TO_NUMBER(struct factors_request, error, 1e-7, 1)},
     {0, "method", "NAME", "beam (parallel beams), cast (quasi-random rays) or mc (random rays) [beam]",
-     TO_FUNCTION(option_method, struct factors_request, methods.method)},
+     TO_FUNCTION(take_method, struct factors_request, method)},
     {0, "cutoff", "D", "spheres with centres farther apart than D do not see each other [none]",
      TO_NUMBER(struct factors_request, cutoff, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX)},
     {0, "targets", "LIST", "rows that are wanted, 3,7,10-19 for example; a list implies --raw [all]",
@@ -65,15 +85,22 @@ static const struct option factors_table[] = {
     OPTIONS_RARE,
     {0, "directions", "N",
      "beam: number of directions, " TEXT_DIRECTIONS
-     "; if all rows are computed, number of lines, which are directions and their opposites; "
-     "the error falls as "
-     "N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " TEXT_OF(FIBRAD_LINES_DEFAULT) " lines, " TEXT_OF(
-         FIBRAD_LINES_AMONG_WALLS) " among walls, more for few spheres; exchange "
-                                   "factors " TEXT_OF(FIBRAD_EXCHANGE_DIRECTIONS_DEFAULT) " dire"
-                                                                                          "ction"
-                                                                                          "s]",
-     TO_COUNT(struct factors_request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
-    OPTIONS_METHODS(struct factors_request),
+     "; if all rows are computed, number of lines, which are directions and their opposites; the error falls as "
+     "N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) " directions; " LINES_USED
+                                                   ", more for few spheres; exchange factors " EXCHANGE_USED
+                                                   " directions]",
+     TO_COUNT(struct factors_request, beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
+    {0, "areas", "KIND", "beam: visible areas, exact or points [exact; along lines points, up to 724 lines]",
+     TO_TEXT(struct factors_request, areas)},
+    {0, "points", "M",
+     "beam: rays along each direction, 64, 128 or 256; along lines masks of 16, 32 or 64 chords; implies --areas "
+     "points [256]",
+     TO_FUNCTION(option_points, struct factors_request, beam.points)},
+    {0, "rays", "N",
+     "cast, mc: rays from a sphere; the error falls as N^-0.6 (cast) or N^-0.5 (mc) [" TEXT_OF(
+         FIBRAD_RAYS_DEFAULT) "; exchange factors 400 paths]",
+     TO_COUNT(struct factors_request, cast.rays, 1, UINT32_MAX)},
+    {0, "seed", "S", "cast, mc, and exchange factors: seed of the rays [0]", TO_TEXT(struct factors_request, seed)},
     {OPTION_TEMPERATURE_UNIT(struct factors_request, zero)},
     {OPTION_WALL_VTP},
     OPTIONS_INPUT_RARE,
@@ -125,37 +152,43 @@ static int factors_help(void) {
 
 /* Chooses the rule of view factors. Refuses options of other methods and of exchange factors. */
 static int choose_view(struct factors_request *request) {
-    struct method_options *methods = &request->methods;
-    fibrad_beam_rule *beam = &methods->beam;
-    if (methods->method == METHOD_EXACT) return message(STATUS_USAGE, "--method exact is for pairs only");
-    if (methods->method == METHOD_SURFACE)
-        return message(STATUS_USAGE, "--method surface is of fibrad pair and fibrad reproduce");
+    const char *areas = request->areas;
+    fibrad_beam_rule *beam = &request->beam;
+    fibrad_cast_rule *cast = &request->cast;
+    const bool exact = areas && strcmp(areas, "exact") == 0, points = areas && strcmp(areas, "points") == 0;
+    const bool beams = request->method == METHOD_BEAM;
     if (request->solid.given || request->temperature.given || walls_keys(&request->bed.walls) & WALL_EMISSIVITY)
         return message(STATUS_USAGE, "%s needs --emissivity",
                        request->solid.given         ? "--solid-conductivity"
                        : request->temperature.given ? "--temperature"
                                                     : "--wall: emissivity");
-    if (request->error > 0 && methods->method != METHOD_BEAM)
-        return message(STATUS_USAGE, "--error is for --method beam");
+    if (request->error > 0 && !beams) return message(STATUS_USAGE, "--error is for --method beam");
     if (request->error > 0 && beam->directions > 0)
         return message(STATUS_USAGE, "--error chooses the directions; leave out --directions");
+    if (areas && !exact && !points) return message(STATUS_USAGE, "--areas: '%.40s' is neither exact nor points", areas);
+    if ((beam->directions || beam->points || areas) && !beams)
+        return message(STATUS_USAGE, "--directions, --areas and --points are for --method beam");
+    if ((cast->rays || request->seed) && beams)
+        return message(STATUS_USAGE, "--rays and --seed are for --method cast and mc");
+    if (exact && beam->points) return message(STATUS_USAGE, "--points contradicts --areas exact");
+    if (exact) beam->chords = FIBRAD_CHORDS_NONE;
+    if (points && !beam->points) beam->points = 256;
+    if (!cast->rays) cast->rays = FIBRAD_RAYS_DEFAULT;
+    cast->random = request->method == METHOD_MC;
     beam->tolerance = request->error;
-    beam->cutoff = methods->cast.cutoff = request->cutoff;
-    if (methods->method != METHOD_BEAM)
-        request->options.cast = &methods->cast;
-    else
-        request->options.beam = beam;
-    return methods_check(methods);
+    beam->cutoff = cast->cutoff = request->cutoff;
+    request->options.cast = beams ? NULL : cast;
+    request->options.beam = beams ? beam : NULL;
+    return request->seed ? options_whole("--seed", request->seed, 0, UINT64_MAX, &cast->seed) : STATUS_OK;
 }
 
 /* The same for exchange factors. */
 static int choose_exchange(struct factors_request *request) {
-    const struct method_options *methods = &request->methods;
     fibrad_exchange_rule *rule = &request->rule;
     *rule = (fibrad_exchange_rule){
-        .paths = methods->cast.rays, .directions = methods->beam.directions, .tolerance = request->error};
+        .paths = request->cast.rays, .directions = request->beam.directions, .tolerance = request->error};
     request->options.exchange = rule;
-    if (methods->method != METHOD_BEAM || methods->areas || methods->beam.points || request->cutoff > 0)
+    if (request->method != METHOD_BEAM || request->areas || request->beam.points || request->cutoff > 0)
         return message(STATUS_USAGE,
                        "--method, --areas, --points and --cutoff are for view factors; leave them out, or "
                        "--emissivity");
@@ -169,7 +202,7 @@ static int choose_exchange(struct factors_request *request) {
     if (request->solid.given != request->temperature.given)
         return message(STATUS_USAGE, "--solid-conductivity and --temperature need each other; %s is missing",
                        request->solid.given ? "--temperature" : "--solid-conductivity");
-    return methods->seed ? options_whole("--seed", methods->seed, 0, UINT64_MAX, &rule->seed) : STATUS_OK;
+    return request->seed ? options_whole("--seed", request->seed, 0, UINT64_MAX, &rule->seed) : STATUS_OK;
 }
 
 /* Checks that need no computation. */
@@ -236,12 +269,11 @@ static void report_exchange(struct factors_request *request, const struct conten
 }
 
 static void report_view(struct factors_request *request, const struct contents *what) {
-    const struct method_options *methods = &request->methods;
-    const bool beam = methods->method == METHOD_BEAM;
+    const bool beam = request->method == METHOD_BEAM;
     struct report *report = &request->bed.report;
-    report_text(report, "method", method_names[methods->method]);
-    report_count(report, beam ? "directions" : "rays", beam ? what->factors->directions : methods->cast.rays);
-    if (methods->beam.points > 0) report_count(report, "points", methods->beam.points);
+    report_text(report, "method", method_names[request->method]);
+    report_count(report, beam ? "directions" : "rays", beam ? what->factors->directions : request->cast.rays);
+    if (request->beam.points > 0) report_count(report, "points", request->beam.points);
     if (request->cutoff > 0) report_value(report, "cutoff", request->cutoff, 9);
 }
 
@@ -285,14 +317,9 @@ static int find_views(struct factors_request *request, const struct bed *bed, fi
         [OUT] = {.name = {"F_surroundings", "F_surroundings_front", "F_surroundings_back"}, .join = mean_of_two}};
     const struct fibrad_triangles *triangles = &request->walls.meshes->triangles;
     const uint32_t sides = 2 * triangles->n;
-    fibrad_fault fault;
     fibrad_side_view *view = malloc(sides * sizeof *view);
     int status = view ? side_arrays_begin(views, triangles, quantity, QUANTITIES) : message_memory();
-    if (!status) {
-        status = fibrad_bed_views(made, view_rays(sides), view);
-        fibrad_bed_describe(made, NULL, &fault);
-        status = bed_options_status(&request->bed, bed, status, &fault);
-    }
+    if (!status) status = bed_options_made(&request->bed, bed, made, fibrad_bed_views(made, view_rays(sides), view));
     for (uint32_t s = 0; s < sides && !status; ++s) {
         views->quantity[TO_SPHERES].side[s] = view[s].spheres;
         views->quantity[OUT].side[s] = view[s].escaped;
@@ -381,7 +408,7 @@ static int factors_frame(void *factors_request, struct bed *bed) {
 }
 
 int command_factors(int argc, char **argv) {
-    struct factors_request request = {.bed.walls.keys = WALL_EMISSIVITY, .methods.method = METHOD_BEAM};
+    struct factors_request request = {.bed.walls.keys = WALL_EMISSIVITY};
     int status = options_read("factors", factors_table, argc, argv, &request);
     if (!status) status = factors_check(&request);
     const int ended = bed_options_end(&request.bed, status, factors_help, factors_frame, &request);

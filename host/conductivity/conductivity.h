@@ -16,10 +16,8 @@
 #include "simple/fibrad_host.h"
 
 /* Along open axes only inner spheres emit. Their centres lie at least so many mean diameters inside the outermost
- * centres. */
-#define CONDUCTION_MARGIN 4.0
-/* The same for spheres that conduct: walks get farther than the emission of one sphere. */
-#define CONDUCTION_MARGIN_WALK 8.0
+ * centres. _WALK: the same for spheres that conduct: walks get farther than the emission of one sphere. */
+enum { CONDUCTION_MARGIN = 4, CONDUCTION_MARGIN_WALK = 8 };
 
 /* The relative conductivities k* of the spheres of a bed, fibrad_relative_conductivity. Begin with zeroes. */
 struct k_star {

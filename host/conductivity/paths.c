@@ -181,7 +181,7 @@ int conduction_emitters(const struct bed *bed, const struct walls *walls, int ax
     const bool open = bed->period[0] == 0 || bed->period[1] == 0 || bed->period[2] == 0;
     if (open && result->emitters < EMITTERS)
         return message_at(STATUS_INPUT, file, 0, "only %u spheres are %g mean diameters inside the bed, %u are needed",
-                          result->emitters, CONDUCTION_MARGIN, EMITTERS);
+                          result->emitters, margin, EMITTERS);
     return find_growth(bed, result);
 }
 

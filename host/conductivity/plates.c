@@ -205,8 +205,8 @@ int plates_conduct(const struct plates *plates, const struct plates_problem *pro
     int status = take_room(&b);
     if (!status) set_up(&b);
     if (!status && b.contacts > 0) status = solve_all(&b, DIRECTIONS_CONTACTS, result);
-    if (!status && problem->emissivity) status = solve_all(&b, DIRECTIONS_ROUGH, &rough);
-    if (!status && problem->emissivity) status = solve_all(&b, DIRECTIONS, result);
+    if (!status) status = solve_all(&b, DIRECTIONS_ROUGH, &rough);
+    if (!status) status = solve_all(&b, DIRECTIONS, result);
     add_error(&result->radiation, &rough.radiation);
     add_error(&result->both, &rough.both);
     if (b.contacts == 0) result->both = result->radiation;

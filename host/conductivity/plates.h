@@ -26,7 +26,7 @@ int plates_open(struct plates *plates, const struct bed *bed, const struct walls
 void plates_close(struct plates *plates);
 
 struct plates_problem {
-    const double *emissivity; /* [spheres]; NULL: contacts alone */
+    const double *emissivity; /* [spheres] */
     const double *relative;   /* [spheres] k* of spheres that conduct; NULL: each sphere has one temperature */
     double temperature;       /* [K] mean of both plates */
     bool touches;             /* conductivities with contacts are wanted */

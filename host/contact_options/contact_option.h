@@ -125,7 +125,7 @@ int contacts_refuse(const struct contact_state *state, const struct bed_options 
 
 /* read_contacts.c: contacts of a file. */
 struct contact_lines {
-    uint32_t n, room;
+    uint32_t n;
     uint32_t *first, *second;
     double *conductance; /* [W/K] */
 };

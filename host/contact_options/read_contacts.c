@@ -33,11 +33,10 @@ static int name_of_end(const struct lines *lines, const char *text, const struct
     if (wall < WALLS_MAX) return STATUS_OK;
     char *rest;
     name = strtoll(text, &rest, 10);
-    if (rest == text || *rest)
-        return message_at(STATUS_INPUT, lines->name, lines->number, "'%.40s' is neither a sphere nor a wall", text);
+    if (rest == text || *rest) return lines_fault(lines, "'%.40s' is neither a sphere nor a wall", text);
     *end = find_sphere(bed, name);
     if (*end < bed->n) return STATUS_OK;
-    return message_at(STATUS_INPUT, lines->name, lines->number, "there is no sphere %" PRId64, name);
+    return lines_fault(lines, "there is no sphere %" PRId64, name);
 }
 
 int contacts_resize(struct contact_lines *to, size_t n) {
@@ -48,21 +47,12 @@ int contacts_resize(struct contact_lines *to, size_t n) {
     return good ? STATUS_OK : message_memory();
 }
 
-static int grow_lines(struct contact_lines *to) {
-    if (to->n < to->room) return STATUS_OK;
-    if (to->room > UINT32_MAX / 2) return message(STATUS_INPUT, "--contacts: too many contacts");
-    const uint32_t room = 2 * to->room + 1024;
-    const int status = contacts_resize(to, room);
-    if (!status) to->room = room;
-    return status;
-}
-
 static int take_contact(const struct lines *lines, const struct fields *fields, const struct bed *bed,
                         const struct walls *walls, double unit, struct contact_lines *to) {
-    if (fields->n != 3)
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%zu columns instead of i,j,W/K", fields->n);
-    int status = grow_lines(to);
+    if (fields->n != 3) return lines_fault(lines, "%zu columns instead of i,j,W/K", fields->n);
     const uint32_t k = to->n;
+    if (k > UINT32_MAX / 2) return message(STATUS_INPUT, "--contacts: too many contacts");
+    int status = k & (k - 1) ? STATUS_OK : contacts_resize(to, 2 * (size_t)k + 1); /* doubles the room */
     if (!status) status = name_of_end(lines, fields->at[0], bed, walls, &to->first[k]);
     if (!status) status = name_of_end(lines, fields->at[1], bed, walls, &to->second[k]);
     if (!status) status = lines_number(lines, "conductance", fields->at[2], &to->conductance[k]);
@@ -70,10 +60,10 @@ static int take_contact(const struct lines *lines, const struct fields *fields, 
     to->conductance[k] *= unit;
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
     if (!(to->conductance[k] >= 0 && to->conductance[k] <= CONDUCTANCE_MOST))
-        return message_at(STATUS_INPUT, lines->name, lines->number, "the conductance is %g; it must be within 0 and %g",
-                          to->conductance[k], CONDUCTANCE_MOST);
+        return lines_fault(lines, "the conductance is %g; it must be within 0 and %g", to->conductance[k],
+                           CONDUCTANCE_MOST);
     if (to->first[k] == to->second[k] && !(periodic && to->first[k] < bed->n))
-        return message_at(STATUS_INPUT, lines->name, lines->number, "%s is in contact with itself", fields->at[0]);
+        return lines_fault(lines, "%s is in contact with itself", fields->at[0]);
     ++to->n;
     return STATUS_OK;
 }
@@ -81,11 +71,11 @@ static int take_contact(const struct lines *lines, const struct fields *fields, 
 /* Takes the header i,j,UNIT. unit: of the conductances [W/K]. */
 static int take_header(const struct lines *lines, const struct fields *fields, double *unit) {
     if (fields->n != 3 || strcmp(fields->at[0], "i") != 0 || strcmp(fields->at[1], "j") != 0)
-        return message_at(STATUS_INPUT, lines->name, lines->number, "the header is not i,j,W/K");
+        return lines_fault(lines, "the header is not i,j,W/K");
     if (unit_factor(fields->at[2], "W/K", unit)) return STATUS_OK;
-    return message_at(STATUS_INPUT, lines->name, lines->number,
-                      "the third name of the header is '%.40s'; it must be a unit of conductance: W/K, mW/K or kW/K",
-                      fields->at[2]);
+    return lines_fault(lines,
+                       "the third name of the header is '%.40s'; it must be a unit of conductance: W/K, mW/K or kW/K",
+                       fields->at[2]);
 }
 
 int contacts_read(const char *pattern, const struct bed *bed, const struct walls *walls, struct contact_lines *to) {

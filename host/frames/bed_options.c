@@ -256,12 +256,15 @@ int bed_options_make(struct bed_options *options, const struct bed *bed, const s
     return bed_options_status(options, bed, status, &run.fault);
 }
 
-static int compute_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made,
-                           const fibrad_bed_rule *rows, fibrad_bed_matrix **factors) {
+int bed_options_made(struct bed_options *options, const struct bed *bed, const fibrad_bed *made, int status) {
     fibrad_fault fault;
-    const int status = fibrad_bed_factors(made, rows, factors);
     fibrad_bed_describe(made, NULL, &fault);
     return bed_options_status(options, bed, status, &fault);
+}
+
+static int compute_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made,
+                           const fibrad_bed_rule *rows, fibrad_bed_matrix **factors) {
+    return bed_options_made(options, bed, made, fibrad_bed_factors(made, rows, factors));
 }
 
 /* Refuses a bed whose rows will not fit into memory, or onto the disk of rows->scratch. */

@@ -149,6 +149,9 @@ fibrad_run bed_options_run(struct bed_options *options);
  * bed_status. */
 int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault);
 
+/* The same after a call for a bed of the library, which knows the fault. */
+int bed_options_made(struct bed_options *options, const struct bed *bed, const fibrad_bed *made, int status);
+
 /* Makes the bed of the library, and warns if spheres and walls contradict each other. Free *made with
  * fibrad_bed_matrix_free. Returns the exit status, as bed_options_status. */
 int bed_options_make(struct bed_options *options, const struct bed *bed, const struct walls *walls, fibrad_bed **made);

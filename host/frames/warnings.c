@@ -36,6 +36,9 @@ enum kind {
 #define DENSITY_HIGH  1e5
 #define SOLIDS_MELT   4000.0 /* [K] hardly a solid is left */
 
+/* Prints a warning about a line of the file; 0: about no line. */
+#define WARN(line, ...) message_at(STATUS_OK, warned->file, line, "warning: " __VA_ARGS__)
+
 /* Whether a kind of warning is the first of its kind. Marks the kind as printed. */
 static bool is_new(struct warned *warned, enum kind kind) {
     const unsigned bit = 1u << kind;
@@ -48,19 +51,17 @@ static bool is_new(struct warned *warned, enum kind kind) {
 static void word_rows(const struct warned *warned, const struct bed *bed, const fibrad_warning *w, bool meshed) {
     const char *more = meshed ? "do triangles cut spheres? If not, more directions help" : "more directions help";
     if (w->code == FIBRAD_WARNING_OPEN_ROWS)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: rows of walls are not closed: their sums are off by %.2g, because they contradict the "
-                   "rows of spheres%s",
-                   w->value, meshed ? "; do triangles cut spheres?" : "");
+        WARN(0,
+             "rows of walls are not closed: their sums are off by %.2g, because they contradict the "
+             "rows of spheres%s",
+             w->value, meshed ? "; do triangles cut spheres?" : "");
     if (w->code == FIBRAD_WARNING_APART)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: rows of walls and of spheres disagreed by %.2g before they were closed; %s", w->value,
-                   more);
+        WARN(0, "rows of walls and of spheres disagreed by %.2g before they were closed; %s", w->value, more);
     if (w->code == FIBRAD_WARNING_CHANGED_ROW)
-        message_at(STATUS_OK, warned->file, bed->line[w->first],
-                   "warning: rows were scaled to add up to 1; this changes what sphere %lld gives to walls and "
-                   "surroundings by %.2g times the error of its row; %s",
-                   (long long)bed_name(bed, w->first), w->value, more);
+        WARN(bed->line[w->first],
+             "rows were scaled to add up to 1; this changes what sphere %lld gives to walls and "
+             "surroundings by %.2g times the error of its row; %s",
+             (long long)bed_name(bed, w->first), w->value, more);
 }
 
 static void word_places(const struct warned *warned, const struct bed *bed, const struct walls *walls,
@@ -68,47 +69,46 @@ static void word_places(const struct warned *warned, const struct bed *bed, cons
     char place[2][BED_LINE_TEXT];
     const char *wall = w->wall > 0 ? wall_name(walls, w->wall - 1) : "";
     if (w->code == FIBRAD_WARNING_OVERLAP)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by "
-                   "about %.1g",
-                   (long long)bed_name(bed, w->first), bed_line_text(bed, w->first, place[0]),
-                   (long long)bed_name(bed, w->second), bed_line_text(bed, w->second, place[1]), w->value, w->other);
+        WARN(0,
+             "sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by "
+             "about %.1g",
+             (long long)bed_name(bed, w->first), bed_line_text(bed, w->first, place[0]),
+             (long long)bed_name(bed, w->second), bed_line_text(bed, w->second, place[1]), w->value, w->other);
     if (w->code == FIBRAD_WARNING_CUT)
-        message_at(STATUS_OK, warned->file, bed->line[w->first],
-                   "warning: sphere %lld reaches through the wall %s by %.2g of its radius (%u such cases in all); is "
-                   "the wall in the right place?",
-                   (long long)bed_name(bed, w->first), wall, w->value, w->count);
+        WARN(bed->line[w->first],
+             "sphere %lld reaches through the wall %s by %.2g of its radius (%u such cases in all); is "
+             "the wall in the right place?",
+             (long long)bed_name(bed, w->first), wall, w->value, w->count);
     if (w->code == FIBRAD_WARNING_MESH_SIZE)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the wall %s is %.3g long, the bed %.3g; is the mesh in the unit of the bed? "
-                   "mesh:FILE:scale=%g scales the mesh",
-                   wall, w->value, w->other, w->value > w->other ? 1e-3 : 1e3);
+        WARN(0,
+             "the wall %s is %.3g long, the bed %.3g; is the mesh in the unit of the bed? "
+             "mesh:FILE:scale=%g scales the mesh",
+             wall, w->value, w->other, w->value > w->other ? 1e-3 : 1e3);
     if (w->code == FIBRAD_WARNING_MESH_PLACE)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same "
-                   "place and unit?",
-                   wall, w->value, w->other, 'x' + (int)w->first, bed_reach(bed, (int)w->first, false),
-                   bed_reach(bed, (int)w->first, true));
+        WARN(0,
+             "the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same "
+             "place and unit?",
+             wall, w->value, w->other, 'x' + (int)w->first, bed_reach(bed, (int)w->first, false),
+             bed_reach(bed, (int)w->first, true));
 }
 
 static void word_temperatures(const struct warned *warned, const struct bed *bed, const struct walls *walls,
                               const fibrad_warning *w) {
     if (w->code == FIBRAD_WARNING_COLD)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: no sphere is warmer than %g K; --temperature-unit C is for degrees Celsius", w->value);
+        WARN(0, "no sphere is warmer than %g K; --temperature-unit C is for degrees Celsius", w->value);
     if (w->code == FIBRAD_WARNING_AROUND)
-        message_at(STATUS_OK, warned->file, 0, "warning: %s is %g K; --temperature-unit C is for degrees Celsius",
-                   w->wall > 0 ? wall_name(walls, w->wall - 1) : "--ambient", w->value);
+        WARN(0, "%s is %g K; --temperature-unit C is for degrees Celsius",
+             w->wall > 0 ? wall_name(walls, w->wall - 1) : "--ambient", w->value);
     if (w->code == FIBRAD_WARNING_ZERO)
-        message_at(STATUS_OK, warned->file, bed->line[w->first],
-                   "warning: sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
-                   "--power, nan stands for an unknown temperature",
-                   (long long)bed_name(bed, w->first), w->count, w->value);
+        WARN(bed->line[w->first],
+             "sphere %lld has 0 K (%u spheres in all), others have up to %g K; is a value missing? With "
+             "--power, nan stands for an unknown temperature",
+             (long long)bed_name(bed, w->first), w->count, w->value);
     if (w->code == FIBRAD_WARNING_SURFACE)
-        message_at(STATUS_OK, warned->file, bed->line[w->first],
-                   "warning: sphere %lld: its surface comes out at %.0f K in one place; --solid-conductivity is for "
-                   "surfaces whose temperature differs little from its mean",
-                   (long long)bed_name(bed, w->first), w->value);
+        WARN(bed->line[w->first],
+             "sphere %lld: its surface comes out at %.0f K in one place; --solid-conductivity is for "
+             "surfaces whose temperature differs little from its mean",
+             (long long)bed_name(bed, w->first), w->value);
 }
 
 void warn_made(struct warned *warned, const struct bed *bed, const struct walls *walls, const fibrad_bed *made,
@@ -149,15 +149,15 @@ void warn_frame(struct warned *warned, const struct bed *bed) {
     const bool before = warned->frames > 0;
     if (before && warned->ids != bed->ids &&
         is_new(warned, OTHER_NAMES)) /* nothing in the output would tell ids from positions */
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: spheres are named by %s, but those of the frames before by %s; --positions names all by "
-                   "positions",
-                   bed->ids ? "ids" : "positions", warned->ids ? "ids" : "positions");
+        WARN(0,
+             "spheres are named by %s, but those of the frames before by %s; --positions names all by "
+             "positions",
+             bed->ids ? "ids" : "positions", warned->ids ? "ids" : "positions");
     if (before && bed->timestep >= 0 && bed->timestep < warned->timestep && is_new(warned, OTHER_ORDER))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: timestep %lld follows timestep %lld; a pattern in quotes, 'bed.*.dump', gives files in "
-                   "the order of their numbers",
-                   (long long)bed->timestep, (long long)warned->timestep);
+        WARN(0,
+             "timestep %lld follows timestep %lld; a pattern in quotes, 'bed.*.dump', gives files in "
+             "the order of their numbers",
+             (long long)bed->timestep, (long long)warned->timestep);
     ++warned->frames;
     warned->ids = bed->ids;
     warned->timestep = bed->timestep;
@@ -168,10 +168,10 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
         const double length = bed->high[axis] - bed->low[axis];
         if (!(period[axis] > 0 && length > 0) || fabs(period[axis] - length) <= PERIOD_OFF * length) continue;
         if (!is_new(warned, OTHER_PERIOD)) return;
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: --periodic is %g along %c, and the box of the file is %g long; is --periodic in the unit "
-                   "of the file?",
-                   period[axis], 'x' + axis, length);
+        WARN(0,
+             "--periodic is %g along %c, and the box of the file is %g long; is --periodic in the unit "
+             "of the file?",
+             period[axis], 'x' + axis, length);
     }
 }
 
@@ -183,18 +183,15 @@ static double mean_radius(const struct bed *bed) {
 
 void warn_unit(struct warned *warned, const struct bed *bed) {
     if (mean_radius(bed) > RADIUS_LARGE && is_new(warned, OTHER_UNIT))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: radii of %g are taken as metres; --length-unit m, or mm for example, says the unit",
-                   mean_radius(bed));
+        WARN(0, "radii of %g are taken as metres; --length-unit m, or mm for example, says the unit", mean_radius(bed));
 }
 
 /* ---- walls ------------------------------------------------------------------------------------------------------ */
 
 void warn_box(struct warned *warned, const struct walls *walls) {
     if (walls->moved && is_new(warned, SHRUNK_BOX))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the box of the file ends within spheres, as a box around centres does. Walls without a "
-                   "coordinate stand where the spheres end. xmin=VALUE gives a coordinate");
+        WARN(0, "the box of the file ends within spheres, as a box around centres does. Walls without a "
+                "coordinate stand where the spheres end. xmin=VALUE gives a coordinate");
 }
 
 /* ---- values ----------------------------------------------------------------------------------------------------- */
@@ -207,15 +204,12 @@ static bool names_celsius(const char *column) {
 
 void warn_celsius(struct warned *warned, const char *column) {
     if (names_celsius(column) && is_new(warned, CELSIUS))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the column %.40s is taken as kelvins; --temperature-unit C is for degrees Celsius",
-                   column);
+        WARN(0, "the column %.40s is taken as kelvins; --temperature-unit C is for degrees Celsius", column);
 }
 
 void warn_closed(struct warned *warned) {
     if (is_new(warned, CLOSED_BED))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: --ambient has no effect: nothing leaves a bed that walls and periods close");
+        WARN(0, "--ambient has no effect: nothing leaves a bed that walls and periods close");
 }
 
 /* The index of the first value outside low to high. n: there is none. */
@@ -229,11 +223,9 @@ void warn_matter(struct warned *warned, const struct bed *bed, const double *cap
     const uint32_t c = find_outlier(capacity, bed->n, CAPACITY_LOW, CAPACITY_HIGH);
     const uint32_t rho = find_outlier(density, bed->n, DENSITY_LOW, DENSITY_HIGH);
     if (c < bed->n && is_new(warned, HEAT_CAPACITY))
-        message_at(STATUS_OK, warned->file, bed->line[c],
-                   "warning: the heat capacity is %g J/(kg K); solids have some 100 to 5000", capacity[c]);
+        WARN(bed->line[c], "the heat capacity is %g J/(kg K); solids have some 100 to 5000", capacity[c]);
     if (rho < bed->n && is_new(warned, DENSITY))
-        message_at(STATUS_OK, warned->file, bed->line[rho],
-                   "warning: the density is %g kg/m3; solids have some 100 to 20,000", density[rho]);
+        WARN(bed->line[rho], "the density is %g kg/m3; solids have some 100 to 20,000", density[rho]);
 }
 
 void warn_table(struct warned *warned, const char *option, const struct table_excess *excess) {
@@ -247,20 +239,15 @@ void warn_table(struct warned *warned, const char *option, const struct table_ex
     size_t k = 0;
     while (strcmp(option, tables[k].option) != 0) ++k;
     if (excess->number > 0 && is_new(warned, tables[k].kind))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: %s: %u %s%s beyond the table, by up to %.3g K; the value at its end is taken", option,
-                   excess->number, tables[k].what, excess->number == 1 ? " has a temperature" : "s have temperatures",
-                   excess->kelvins);
+        WARN(0, "%s: %u %s%s beyond the table, by up to %.3g K; the value at its end is taken", option, excess->number,
+             tables[k].what, excess->number == 1 ? " has a temperature" : "s have temperatures", excess->kelvins);
 }
 
 void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until) {
     if (curve->n == 0) return;
     const double first = curve->x[0], last = curve->x[curve->n - 1];
     if (first > TIME_LEAST * until)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the table of %s begins at %g s; before, its first temperature is taken", what, first);
+        WARN(0, "the table of %s begins at %g s; before, its first temperature is taken", what, first);
     if (last < (1 - TIME_LEAST) * until)
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the table of %s ends at %g s; from there to %g s its last temperature is taken", what,
-                   last, until);
+        WARN(0, "the table of %s ends at %g s; from there to %g s its last temperature is taken", what, last, until);
 }

@@ -153,12 +153,12 @@ void heat_report(struct heat *heat);
  * summary. Status 0, STATUS_USAGE, STATUS_INPUT naming the line of a sphere, or as bed_options_status. */
 int heat_in_time(struct heat *heat);
 
-/* face.c: finds the area of the open faces, and adds the openings that the bed of the library needs there to `opened`.
- * Status 0, or STATUS_USAGE if there is none or one has no end. */
+/* face.c: adds the openings that the bed of the library needs at open faces to `opened`. Status 0, or STATUS_USAGE if
+ * there is no open face or one has no end. */
 int face_begin(struct heat *heat, struct walls *opened);
 
-/* Finds the emissivity of the face. By Kirchhoff's law it is the fraction of black radiation from outside that spheres
- * and walls absorb: paths from the open faces tell it. Status 0, or as bed_options_status. */
+/* Finds area and emissivity of the face. By Kirchhoff's law it is the fraction of black radiation from outside that
+ * spheres and walls absorb: paths from the open faces tell it. Status 0, or as bed_options_status. */
 int face_solve(struct heat *heat);
 void face_report(struct heat *heat);
 

@@ -1,10 +1,10 @@
 /* heat_time.c - temperatures of one bed in time. SPDX-License-Identifier: MIT */
 #include <gsl/gsl_math.h>
-#include <gsl/gsl_sort.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 #include "plot/plot_time.h"
@@ -62,7 +62,7 @@ struct time_run {
     uint64_t steps, refused, sweeps, corrections; /* sums over spans, as in fibrad_span */
     double error;                                 /* largest fibrad_span.error */
     struct time_point *point;                     /* [points] of the picture */
-    size_t points, room;
+    size_t points;
     bool failed; /* memory for points ran out */
     struct table_excess excess[TABLES];
     double lag; /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
@@ -79,14 +79,10 @@ static struct time_point point_of(const struct time_run *m, double time, const d
 
 static void note_point(void *time_run, double time, const double *temperature) {
     struct time_run *m = time_run;
-    if (m->points == m->room) {
-        const size_t room = 2 * m->room + 64;
-        struct time_point *point = realloc(m->point, room * sizeof *point);
-        m->failed = m->failed || !point;
-        if (!point) return;
-        m->point = point, m->room = room;
-    }
-    m->point[m->points++] = point_of(m, m->now + time, temperature);
+    bool good = true;
+    m->point = memory_grown(m->point, m->points, sizeof *m->point, &good);
+    m->failed = m->failed || !good;
+    if (good) m->point[m->points++] = point_of(m, m->now + time, temperature);
 }
 
 /* The temperature of a table at a time [K]. Without a table: `otherwise`. */
@@ -104,53 +100,47 @@ static void outside_at(const struct time_run *m, double time, double wall[WALLS_
     *surroundings = temperature_at(m, &h->given.ambient_curve, time, isnan(around) ? 0 : around);
 }
 
-/* Lists the times of a table that lie between 0 and `until`. The temperature is linear between them, so spans of the
- * library end there. Returns their number. */
-static size_t list_table_times(const struct curve *curve, double until, double *t) {
-    size_t n = 0;
-    for (size_t k = 0; k < curve->n; ++k)
-        if (curve->x[k] > 0 && curve->x[k] < until) t[n++] = curve->x[k];
-    return n;
+/* The end of a span. Times of tables are such ends, since temperatures are linear between them. */
+struct span_end {
+    double time;
+    bool output; /* a time of output */
+};
+
+static int by_time(const void *a, const void *b) {
+    const double x = ((const struct span_end *)a)->time, y = ((const struct span_end *)b)->time;
+    return (x > y) - (x < y);
 }
 
-/* Finds the ends of all spans in ascending order: times of output and times of tables. output[k]: (*times)[k] is a time
- * of output. */
-static int find_times(const struct heat *h, double **times, bool **output, size_t *count) {
+/* Finds the ends of all spans in ascending order. */
+static int find_times(const struct heat *h, struct span_end **ends, size_t *count) {
     const struct time_options *o = &h->time;
-    const struct curve *wall = h->values.tables.curve, *ambient = &h->given.ambient_curve;
     const size_t every = o->every > 0 ? (size_t)ceil(o->until / o->every * (1 - 1e-12)) : 0;
-    size_t room = every + TIMES_MAX + 2, n = 0, outputs;
-    for (uint32_t k = 0; k < h->walls.count; ++k) room += wall[k].n;
-    room += ambient->n;
-    double *t = *times = malloc(room * sizeof *t);
-    *output = calloc(room, sizeof **output);
-    if (!t || !*output) return message_memory();
-    for (; n < every; ++n) t[n] = o->every * (double)n;
-    int listed = 0, status = o->times ? options_numbers("--times", o->times, TIMES_MAX, t, &listed) : STATUS_OK;
+    size_t room = every + TIMES_MAX + 2, n = 0;
+    double listed[TIMES_MAX];
+    int given = 0, status = o->times ? options_numbers("--times", o->times, TIMES_MAX, listed, &given) : STATUS_OK;
     if (status) return status;
-    n += (size_t)listed;
+    for (uint32_t k = 0; k < h->walls.count; ++k) room += h->values.tables.curve[k].n;
+    struct span_end *end = *ends = malloc((room + h->given.ambient_curve.n) * sizeof *end);
+    if (!end) return message_memory();
+    for (; n < every; ++n) end[n] = (struct span_end){o->every * (double)n, true};
+    for (int k = 0; k < given; ++k) end[n++] = (struct span_end){listed[k], true};
     for (size_t k = 0; k < n; ++k)
-        if (!(t[k] >= 0 && t[k] <= o->until && (k == 0 || t[k] > t[k - 1])))
-            return message(STATUS_USAGE, "--times: %g is not above the time before, or not within 0 and %g s", t[k],
-                           o->until);
-    if (!o->times && (n == 0 || t[n - 1] < o->until)) t[n++] = o->until;
-    outputs = n;
-    double *wanted = malloc(outputs * sizeof *wanted);
-    if (!wanted) return message_memory();
-    memcpy(wanted, t, outputs * sizeof *wanted);
-    if (t[n - 1] < o->until) t[n++] = o->until;
-    for (uint32_t k = 0; k < h->walls.count; ++k) n += list_table_times(&wall[k], o->until, t + n);
-    n += list_table_times(ambient, o->until, t + n);
-    gsl_sort(t, 1, n);
-    *count = 0;
-    for (size_t k = 0, next = 0; k < n; ++k) {
-        if (*count > 0 && t[k] == t[*count - 1]) continue;
-        t[*count] = t[k];
-        (*output)[*count] = next < outputs && wanted[next] == t[k];
-        next += (*output)[*count];
-        ++*count;
+        if (!(end[k].time >= 0 && end[k].time <= o->until && (k == 0 || end[k].time > end[k - 1].time)))
+            return message(STATUS_USAGE, "--times: %g is not above the time before, or not within 0 and %g s",
+                           end[k].time, o->until);
+    end[n++] = (struct span_end){o->until, !o->times};
+    for (uint32_t k = 0; k <= h->walls.count; ++k) {
+        const struct curve *curve = k < h->walls.count ? &h->values.tables.curve[k] : &h->given.ambient_curve;
+        for (size_t p = 0; p < curve->n; ++p)
+            if (curve->x[p] > 0 && curve->x[p] < o->until) end[n++] = (struct span_end){curve->x[p], false};
     }
-    free(wanted);
+    qsort(end, n, sizeof *end, by_time);
+    *count = 0;
+    for (size_t k = 0; k < n; ++k)
+        if (*count > 0 && end[k].time == end[*count - 1].time)
+            end[*count - 1].output |= end[k].output;
+        else
+            end[(*count)++] = end[k];
     return STATUS_OK;
 }
 
@@ -285,24 +275,22 @@ static int advance(struct time_run *m, double time) {
 }
 
 static int run_spans(struct time_run *m) {
-    double *times = NULL;
-    bool *output = NULL;
+    struct span_end *end = NULL;
     size_t count = 0;
-    int status = find_times(m->heat, &times, &output, &count);
+    int status = find_times(m->heat, &end, &count);
     if (!status) note_point(m, 0, m->span.temperature);
     for (size_t k = 0; k < count && !status; ++k) {
-        if (times[k] > 0) status = advance(m, times[k]);
-        if (!status && output[k]) status = write_state(m);
+        if (end[k].time > 0) status = advance(m, end[k].time);
+        if (!status && end[k].output) status = write_state(m);
     }
     for (uint32_t k = 0; k < m->heat->walls.count && !status; ++k) {
         fibrad_heat_sources shown;
         if (!isnan(m->wall[k])) continue;
-        status = output[count - 1] ? STATUS_OK : library_status(m, solve_state(m, &shown));
+        status = end[count - 1].output ? STATUS_OK : library_status(m, solve_state(m, &shown));
         m->wall[k] = m->heat->result.wall_temperature[k];
     }
     if (!status && m->failed) status = message_memory();
-    free(times);
-    free(output);
+    free(end);
     return status;
 }
 

@@ -8,12 +8,11 @@
 #include <stdlib.h>
 
 #include "cli/message.h"
+#include "simple/nearest.h"
 
 #define TIED 1e-9 /* relative difference of squared distances that count as equal */
 enum { VOTERS_MOST = 1000, VOTERS_LEAST = 50 };
 #define VOTES_MOST 2e7 /* distances from a sphere to a triangle, in all */
-
-static double product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /* A ball about a triangle. */
 struct ball {
@@ -36,36 +35,21 @@ static struct ball ball_of(const struct surface *surface, uint32_t triangle) {
     return ball;
 }
 
-/* Squared distance from a point to the line from a to b. */
-static double to_line(const double p[3], const double a[3], const double b[3]) {
-    const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-    const double square = product(ab, ab), along = square > 0 ? fmin(fmax(product(ap, ab) / square, 0), 1) : 0;
-    const double off[3] = {ap[0] - along * ab[0], ap[1] - along * ab[1], ap[2] - along * ab[2]};
-    return product(off, off);
-}
-
 /* Finds squared distance and side of a point and a triangle, and whether the nearest point lies on an edge. False: the
  * triangle has no area. */
 static bool to_triangle(const struct surface *surface, uint32_t triangle, const double p[3], struct nearest *found) {
-    double normal[3];
-    const double *c[3];
-    for (int k = 0; k < 3; ++k) c[k] = surface_corner(surface, triangle, k);
+    double normal[3], corner[3][3], to[3];
+    bool inside;
+    for (int k = 0; k < 3; ++k)
+        for (int axis = 0; axis < 3; ++axis) corner[k][axis] = surface_corner(surface, triangle, k)[axis] - p[axis];
     surface_normal(surface, triangle, normal);
-    const double square = product(normal, normal);
-    const double height = product(normal, (const double[]){p[0] - c[0][0], p[1] - c[0][1], p[2] - c[0][2]});
-    *found = (struct nearest){.side = height > 0 ? 1 : height < 0 ? -1 : 0};
-    for (int k = 0; k < 3; ++k) { /* beyond an edge? */
-        const double *a = c[k], *b = c[(k + 1) % 3];
-        const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]}, ap[3] = {p[0] - a[0], p[1] - a[1], p[2] - a[2]};
-        const double across[3] = {ab[1] * ap[2] - ab[2] * ap[1], ab[2] * ap[0] - ab[0] * ap[2],
-                                  ab[0] * ap[1] - ab[1] * ap[0]};
-        found->edge = found->edge || product(across, normal) < 0;
-    }
-    if (found->edge)
-        found->square = fmin(fmin(to_line(p, c[0], c[1]), to_line(p, c[1], c[2])), to_line(p, c[2], c[0]));
-    else
-        found->square = height * height / square;
-    return square > 0;
+    const double distance = nearest_on_triangle(corner, to, &inside), depth = inner(normal, corner[0]);
+    *found = (struct nearest){.square = distance * distance,
+                              .side = depth < 0   ? 1
+                                      : depth > 0 ? -1
+                                                  : 0,
+                              .edge = !inside};
+    return inner(normal, normal) > 0;
 }
 
 /* Updates the nearest triangles with one more triangle. In a periodic bed the nearest image of the point counts. */
@@ -139,7 +123,7 @@ double facing_volume(const struct surface *surface, const struct component *comp
         const uint32_t t = surface->in_components[k];
         const double *at = surface_corner(surface, t, 0);
         surface_normal(surface, t, normal);
-        const double six = product(normal, (const double[]){at[0] - from[0], at[1] - from[1], at[2] - from[2]});
+        const double six = inner(normal, (const double[]){at[0] - from[0], at[1] - from[1], at[2] - from[2]});
         volume += (surface->turned[t] ? -six : six) / 6;
     }
     return volume;

@@ -141,17 +141,6 @@ static int extended_columns(struct source *source, char *properties, struct bed 
     return status;
 }
 
-/* Whether a comment has Properties with a colon, or with blanks before its =. */
-static bool misspells_properties(const char *comment) {
-    static const char key[] = "Properties";
-    for (const char *c = comment; *c; ++c) {
-        if ((c > comment && !isspace((unsigned char)c[-1])) || strncasecmp(c, key, sizeof key - 1) != 0) continue;
-        const char *behind = c + sizeof key - 1, *sign = behind + strspn(behind, " \t");
-        if (*sign == ':' || (*sign == '=' && sign > behind)) return true;
-    }
-    return false;
-}
-
 static int read_xyz(struct source *source, struct bed *bed) {
     static const char lammps[] = "Atoms. Timestep: ";
     bool more;
@@ -167,10 +156,9 @@ static int read_xyz(struct source *source, struct bed *bed) {
         if (!status) status = extended_columns(source, properties, bed);
         return status ? status : source_rows(source, atoms, 0, bed);
     }
-    if (misspells_properties(comment))
-        return source_fail(source, "Properties needs = right behind it: Properties=species:S:1:pos:R:3:radius:R:1");
     if (!source->options.no_radius)
-        return source_fail(source, "an XYZ file without Properties=... has no radii; --radius gives them");
+        return source_fail(
+            source, "an XYZ file without Properties=species:S:1:pos:R:3:radius:R:1 has no radii; --radius gives them");
     status = source_columns(source, "type x y z", bed);
     return status ? status : source_rows(source, atoms, ANY, bed);
 }

@@ -7,9 +7,7 @@
 #include <string.h>
 
 #define ROWS_AT_ONCE 16 /* rows per task: few enough to divide a bed, enough to be neighbours in the cache */
-#define LONG_RATIO   8  /* the row of a sphere of more than this many mean radii is divided over the threads */
-#define PARTS_EACH   4  /* parts of a divided row per thread */
-#define PARTS_MAX    256
+#define LONG_RATIO   8  /* the row of a sphere of more than this many mean radii begins early */
 #define AVERAGES     4  /* tasks of averaging per thread: several, so that a late thread does not delay the others */
 #define AVERAGES_MAX 64 /* at most so many tasks of averaging, unless there are more threads: each reads all rows */
 #define FILED_MAX    256
@@ -66,86 +64,22 @@ int fibrad_row_by_beams(const void *rule, const fibrad_scene *scene, fibrad_work
     return fibrad_beam_row(scene, work, i, rule, row);
 }
 
-/* One row that is divided into parts, one per task. */
-struct part_tasks {
-    fibrad_bed *bed;
-    fibrad_beam_rule rule;
-    uint32_t sphere, parts, windows;
-    fibrad_row_part part[PARTS_MAX];
-};
-
-static int run_row_part(void *tasks, int thread, uint32_t task) {
-    struct part_tasks *t = tasks;
-    const uint32_t n = t->windows;
-    const uint32_t from = (uint32_t)((uint64_t)n * task / t->parts),
-                   to = (uint32_t)((uint64_t)n * (task + 1) / t->parts);
-    return fibrad_beam_part(t->bed->scene, &t->bed->team.work[thread], t->sphere, &t->rule, from, to, &t->part[task]);
+static void exchange(uint32_t *order, uint32_t a, uint32_t b) {
+    const uint32_t i = order[a];
+    order[a] = order[b], order[b] = i;
 }
 
-/* Computes the row of tasks->sphere, by all threads. */
-static int run_divided(const struct row_tasks *rows, struct part_tasks *tasks) {
-    fibrad_team *team = &rows->bed->team;
-    fibrad_row row = {.rows = &team->rows[0]};
-    int status = fibrad_team_run(team, NULL, tasks->parts, 1, run_row_part, tasks, NULL);
-    if (!status)
-        status = fibrad_beam_join(rows->bed->scene, &team->work[0], tasks->sphere, &tasks->rule, tasks->part,
-                                  tasks->parts, &row);
-    if (!status) note_row(rows, 0, &row);
-    return status;
-}
-
-/* Computes the first `count` rows one after the other, each by all threads. *failed: the number of the first row that
- * fails; unchanged if none fails. */
-static int run_all_divided(const struct row_tasks *rows, uint32_t count, uint32_t all, uint32_t *failed) {
-    const fibrad_beam_rule *rule = rows->rule;
-    fibrad_team *team = &rows->bed->team;
-    struct part_tasks *tasks = calloc(1, sizeof *tasks);
-    int status = tasks ? FIBRAD_OK : FIBRAD_E_MEMORY;
-    double reported = -INFINITY;
-    if (tasks) {
-        tasks->bed = rows->bed;
-        if (rule) tasks->rule = *rule;
-        if (!tasks->rule.directions && !tasks->rule.lines) tasks->rule.directions = FIBRAD_DIRECTIONS_DEFAULT;
-        const uint32_t most = PARTS_EACH * (uint32_t)team->threads;
-        const uint32_t n = tasks->rule.lines ? fibrad_line_set_count(tasks->rule.lines) : tasks->rule.directions;
-        tasks->windows = n;
-        tasks->parts = most < PARTS_MAX ? most : PARTS_MAX;
-        if (tasks->parts > n) tasks->parts = n;
-        for (uint32_t p = 0; p < tasks->parts; ++p) tasks->part[p].memory.resize = fibrad_heap_resize;
-    }
-    for (uint32_t k = 0; k < count && !status; ++k) {
-        tasks->sphere = rows->order[k];
-        if (omp_get_wtime() - reported > TEAM_INTERVAL) {
-            status = fibrad_team_report(team, "rows", k, all);
-            reported = omp_get_wtime();
-        }
-        if (status) break;
-        status = run_divided(rows, tasks);
-        if (status) *failed = k;
-    }
-    for (uint32_t p = 0; tasks && p < tasks->parts; ++p) free(tasks->part[p].memory.block);
-    free(tasks);
-    return status;
-}
-
-/* Moves spheres far larger than the mean to the front of the order. A sphere of k mean radii has k^2 times the discs in
- * a window, so its row takes long. The order is the same for any number of threads, and so is the row that fails first.
- * Returns the number of rows to be divided over the threads: those of the large spheres, or all rows if they are fewer
- * than threads. */
-static uint32_t put_long_first(const fibrad_bed *bed, fibrad_row_method *row, const fibrad_beam_rule *rule,
-                               uint32_t *order, uint32_t count) {
-    const fibrad_spheres *s = &bed->spheres;
+/* A sphere of k mean radii has k^2 times the discs in a window, so its row takes long. Threads take `chunk` rows at a
+ * time. Each of the first chunks begins with the row of a sphere far larger than the mean. The order is the same for
+ * any number of threads, and so is the row that fails first. */
+static void put_long_first(const fibrad_spheres *s, uint32_t *order, uint32_t count, uint32_t chunk) {
     uint32_t longs = 0;
     double sum = 0;
-    if (row != fibrad_row_by_beams || (rule && rule->tolerance > 0)) return 0;
     for (uint32_t i = 0; i < s->n; ++i) sum += s->r[i];
     for (uint32_t k = 0; k < count; ++k)
-        if (s->r[order[k]] * s->n > LONG_RATIO * sum) {
-            const uint32_t i = order[k];
-            order[k] = order[longs], order[longs++] = i;
-        }
-    if (bed->team.threads == 1) return 0;
-    return count < (uint32_t)bed->team.threads ? count : longs;
+        if (s->r[order[k]] * s->n > LONG_RATIO * sum) exchange(order, k, longs++);
+    for (uint32_t k = longs; k-- > 1;)
+        if (k < count / chunk) exchange(order, k, k * chunk);
 }
 
 /* Lists the wanted spheres in the order of the cells. Returns their number. */
@@ -170,16 +104,9 @@ int fibrad_bed_rows(fibrad_bed *bed, fibrad_row_method *row, const void *rule, c
     if (!status) {
         struct row_tasks tasks = {bed, row, rule, order, part};
         const uint32_t count = list_spheres(bed, wanted, order);
-        const uint32_t longs = put_long_first(bed, row, rule, order, count);
-        failed = count;
-        if (longs > 0) status = run_all_divided(&tasks, longs, count, &failed);
-        if (!status) {
-            tasks.order += longs;
-            team->before = longs;
-            status = fibrad_team_run(team, "rows", count - longs, ROWS_AT_ONCE, run_row, &tasks, &failed);
-            team->before = 0;
-            failed += longs;
-        }
+        const int chunk = count < ROWS_AT_ONCE * (uint32_t)team->threads ? 1 : ROWS_AT_ONCE;
+        put_long_first(&bed->spheres, order, count, (uint32_t)chunk);
+        status = fibrad_team_run(team, "rows", count, chunk, run_row, &tasks, &failed);
         if (status && failed < count) bed->fault = (fibrad_fault){order[failed], order[failed], team->triangle, 0, 0};
     }
     for (int t = 0; t < team->threads && !status; ++t) {

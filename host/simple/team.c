@@ -50,9 +50,7 @@ int fibrad_team_scratch(fibrad_team *team, const char *folder) {
 }
 
 int fibrad_team_report(const fibrad_team *team, const char *stage, uint64_t done, uint64_t total) {
-    const uint64_t before = team->before;
-    if (!stage || !team->progress || !team->progress(team->context, stage, before + done, before + total))
-        return FIBRAD_OK;
+    if (!stage || !team->progress || !team->progress(team->context, stage, done, total)) return FIBRAD_OK;
     return FIBRAD_E_CANCELLED;
 }
 

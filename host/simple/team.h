@@ -17,7 +17,6 @@ typedef struct fibrad_team {
     int threads;
     fibrad_progress *progress;
     void *context;
-    uint32_t before;          /* tasks of the stage that earlier runs have done, for progress */
     fibrad_work *work;        /* [threads] */
     fibrad_rows *rows;        /* [threads] */
     fibrad_scratch *store;    /* [threads] memory of the rows */

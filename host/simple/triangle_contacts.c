@@ -8,6 +8,7 @@
 #include <stdlib.h>
 
 #include "simple/contact_list.h"
+#include "simple/nearest.h"
 
 #define BESIDE 0.9
 
@@ -21,41 +22,6 @@ struct touches {
     struct touch *touch;
     size_t n, capacity;
 };
-
-static double inner(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-/* The point of the side from `a` along `side` that is nearest to the origin. */
-static double nearest_on_side(const double a[3], const double side[3], double to[3]) {
-    const double square = inner(side, side),
-                 along = square > 0 ? smaller_of(1, larger_of(0, -inner(a, side) / square)) : 0;
-    for (int k = 0; k < 3; ++k) to[k] = a[k] + along * side[k];
-    return inner(to, to);
-}
-
-/* The point of a triangle that is nearest to the origin. corner[3]: relative to the origin. Returns its distance. */
-static double nearest_on_triangle(double corner[3][3], double to[3]) {
-    double side[3][3], normal[3], best = INFINITY;
-    for (int c = 0; c < 3; ++c)
-        for (int k = 0; k < 3; ++k) side[c][k] = corner[(c + 1) % 3][k] - corner[c][k];
-    for (int k = 0; k < 3; ++k)
-        normal[k] = side[0][(k + 1) % 3] * side[1][(k + 2) % 3] - side[0][(k + 2) % 3] * side[1][(k + 1) % 3];
-    const double square = inner(normal, normal);
-    bool inside = square > 0;
-    for (int c = 0; c < 3; ++c) {
-        double out[3], at[3];
-        for (int k = 0; k < 3; ++k)
-            out[k] = side[c][(k + 1) % 3] * normal[(k + 2) % 3] - side[c][(k + 2) % 3] * normal[(k + 1) % 3];
-        inside = inside && inner(out, corner[c]) >= 0;
-        const double far = nearest_on_side(corner[c], side[c], at);
-        if (far >= best) continue;
-        best = far;
-        for (int k = 0; k < 3; ++k) to[k] = at[k];
-    }
-    if (!inside) return sqrt(best);
-    const double height = inner(corner[0], normal) / square;
-    for (int k = 0; k < 3; ++k) to[k] = height * normal[k];
-    return fabs(height) * sqrt(square);
-}
 
 static int add_touch(struct touches *all, const struct touch *touch) {
     if (all->n == all->capacity) {
@@ -78,7 +44,7 @@ static int touch_triangle(const struct triangle_search *s, double corner[3][3], 
         const double reach = s->at[i][3] * (1 + s->gas_reach);
         double from[3][3];
         struct touch touch = {.sphere = i, .wall = wall};
-        bool near = true;
+        bool near = true, inside;
         for (int k = 0; k < 3 && near; ++k) {
             const double period = s->period[k], less = middle[k] - s->at[i][k],
                          image = period > 0 ? period * round(less / period) : 0;
@@ -86,7 +52,7 @@ static int touch_triangle(const struct triangle_search *s, double corner[3][3], 
             for (int c = 0; c < 3; ++c) from[c][k] = corner[c][k] - s->at[i][k] - image;
         }
         if (!near) continue;
-        touch.distance = nearest_on_triangle(from, touch.to);
+        touch.distance = nearest_on_triangle(from, touch.to, &inside);
         if (touch.distance < reach && add_touch(all, &touch)) return FIBRAD_E_MEMORY;
     }
     return FIBRAD_OK;

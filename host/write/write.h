@@ -69,6 +69,10 @@ struct heat_column {
 enum { HEAT_TEMPERATURE, HEAT_POWER, HEAT_INSIDE = 4, HEAT_LIGHT = 9, HEAT_PARTS = 11, HEAT_COLUMNS = 13 };
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]);
 
+/* The same of wall k, or of the surroundings (k = -1), whose insides are NaN. Their light is what leaves at first and
+ * in all. Returns the name; NULL: there are no surroundings. */
+const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_NAME], double value[HEAT_COLUMNS]);
+
 /* The value of sphere i. */
 static inline double heat_value(const struct heat_column *column, uint32_t i) {
     return column->less ? column->value[i] - column->less[i] : column->value[i];

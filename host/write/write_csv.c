@@ -151,23 +151,11 @@ static void write_power(struct csv *csv, int64_t name, const char *wall, const s
     end_line(csv, at, wall);
 }
 
-/* The columns of a wall or of the surroundings. light: first absorbed, and in all. conducted: part of the power. */
-static void write_wall_power(struct csv *csv, int64_t name, const char *wall, const struct heat_column *column,
-                             const double heat[4], const double light[2], double conducted) {
-    const double value[HEAT_COLUMNS] = {heat[0],  heat[1], heat[2], heat[3],  NAN,      NAN,
-                                        NAN,      NAN,     NAN,     light[0], light[1], heat[1] - conducted,
-                                        conducted};
-    write_power(csv, name, wall, column, value);
-}
-
 int write_heat_csv(FILE *file, const struct contents *what) {
-    const double surroundings = what->sources->surroundings;
-    const fibrad_heat_result *r = what->result;
-    const fibrad_light_result *light = what->light;
     struct csv csv = {.named = true};
     struct heat_column column[HEAT_COLUMNS];
     char wall[WALL_NAME], names[200] = "i";
-    double value[HEAT_COLUMNS] = {0}, of_light[2] = {0, 0};
+    double value[HEAT_COLUMNS] = {0};
     heat_columns(what, column);
     for (int k = 0; k < HEAT_COLUMNS; ++k)
         if (column[k].value) strcat(strcat(names, ","), column[k].name);
@@ -178,17 +166,9 @@ int write_heat_csv(FILE *file, const struct contents *what) {
             if (column[k].value) value[k] = heat_value(&column[k], i);
         write_power(&csv, bed_name(what->bed, i), "", column, value);
     }
-    if (!what->walls) return STATUS_OK;
-    if (light) of_light[0] = light->transmitted, of_light[1] = light->transmitted + light->reflected;
-    if (!isnan(surroundings))
-        write_wall_power(&csv, SURROUNDINGS, "surroundings", column,
-                         (const double[]){surroundings, r->surroundings_power, r->surroundings_error, 0}, of_light, 0);
-    for (uint32_t k = 0; k < what->walls->count; ++k) {
-        if (light) of_light[0] = light->wall_absorbed_first[k], of_light[1] = light->wall_absorbed[k];
-        write_wall_power(
-            &csv, FIRST_WALL - (int64_t)k, contents_wall(what, k, wall), column,
-            (const double[]){r->wall_temperature[k], r->wall_power[k], r->wall_error[k], r->wall_temperature_error[k]},
-            of_light, r->conducted ? r->wall_conducted[k] : 0);
+    for (int64_t k = -1; what->walls && k < what->walls->count; ++k) {
+        const char *name = heat_outside(what, k, wall, value);
+        if (name) write_power(&csv, FIRST_WALL - k, name, column, value);
     }
     return STATUS_OK;
 }

@@ -115,37 +115,24 @@ static void json_column(FILE *file, const struct heat_column *column, uint32_t n
     putc(']', file);
 }
 
-/* conducted: part of the power; NULL: there are no contacts. */
-static void json_power(FILE *file, const char *comma, const char *name, double temperature, double power,
-                       double power_error, double temperature_error, const double *conducted) {
-    fprintf(file, "%s\"%s\":{\"T_K\":", comma, name);
-    text_json_real(file, temperature);
-    json_entry(file, "q_W", power);
-    json_entry(file, "q_error_W", power_error);
-    json_entry(file, "T_error_K", temperature_error);
-    if (conducted) json_entry(file, "q_radiation_W", power - *conducted);
-    if (conducted) json_entry(file, "q_conduction_W", *conducted);
-    putc('}', file);
-}
-
 int write_heat_json(FILE *file, const struct contents *what) {
-    const double surroundings = what->sources->surroundings;
-    const fibrad_heat_result *result = what->result;
-    const uint32_t walls = what->walls ? what->walls->count : 0, n = what->bed->n;
-    static const int order[HEAT_COLUMNS] = {0, 1, 2, 3, 9, 10, 11, 12, 4, 5, 6, 7, 8}; /* insides come last */
+    const uint32_t walls = what->walls ? what->walls->count : 0;
     struct heat_column column[HEAT_COLUMNS];
-    char name[WALL_NAME];
+    char wall[WALL_NAME];
     json_begin(file, what, "heat");
     heat_columns(what, column);
     for (int k = 0; k < HEAT_COLUMNS; ++k)
-        if (column[order[k]].value) json_column(file, &column[order[k]], n);
-    if (what->walls && !isnan(surroundings))
-        json_power(file, ",", "surroundings", surroundings, result->surroundings_power, result->surroundings_error, 0,
-                   NULL);
-    for (uint32_t k = 0; k < walls; ++k)
-        json_power(file, k > 0 ? "," : ",\"walls\":{", contents_wall(what, k, name), result->wall_temperature[k],
-                   result->wall_power[k], result->wall_error[k], result->wall_temperature_error[k],
-                   result->conducted ? &result->wall_conducted[k] : NULL);
+        if (column[k].value) json_column(file, &column[k], what->bed->n);
+    for (int64_t k = -1; what->walls && k < walls; ++k) {
+        double value[HEAT_COLUMNS];
+        const char *name = heat_outside(what, k, wall, value);
+        if (!name) continue;
+        fprintf(file, "%s\"%s\":{\"T_K\":", k == 0 ? ",\"walls\":{" : ",", name);
+        text_json_real(file, value[HEAT_TEMPERATURE]);
+        for (int c = HEAT_POWER; c < HEAT_COLUMNS; ++c)
+            if (column[c].value && (c < HEAT_INSIDE || c >= HEAT_PARTS)) json_entry(file, column[c].name, value[c]);
+        putc('}', file);
+    }
     fputs(walls > 0 ? "}}\n" : "}\n", file);
     return interrupt_status();
 }

@@ -63,17 +63,16 @@ int write_vtp(FILE *file, const struct contents *what) {
 
 int write_heat_vtp(FILE *file, const struct contents *what) {
     const struct bed *bed = what->bed;
-    static const int further[] = {HEAT_LIGHT + 1, HEAT_PARTS, HEAT_PARTS + 1, 4, 5, 6, 7, 8}; /* insides come last */
     struct heat_column column[HEAT_COLUMNS];
     vtp_begin(file, bed, "power_W");
     vtp_doubles(file, "temperature_K", what->result->temperature, bed->n, 1, NULL);
     vtp_doubles(file, "emissivity", what->sources->emissivity, bed->n, 1, NULL);
     vtp_doubles(file, "power_W", what->result->power, bed->n, 1, NULL);
     heat_columns(what, column);
-    for (size_t k = 0; k < sizeof further / sizeof *further; ++k) {
-        if (!column[further[k]].value) continue;
-        struct base64 to = base64_begin(file, "Float64", column[further[k]].name, 1, bed->n);
-        for (uint32_t i = 0; i < bed->n; ++i) base64_double(&to, heat_value(&column[further[k]], i));
+    for (int k = HEAT_INSIDE; k < HEAT_COLUMNS; ++k) {
+        if (!column[k].value || k == HEAT_LIGHT) continue;
+        struct base64 to = base64_begin(file, "Float64", column[k].name, 1, bed->n);
+        for (uint32_t i = 0; i < bed->n; ++i) base64_double(&to, heat_value(&column[k], i));
         base64_end(&to);
     }
     vtp_end(file, bed);

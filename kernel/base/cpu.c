@@ -83,20 +83,6 @@ int fibrad_isa_choose(int wish) {
 }
 
 const char *fibrad_isa_name(int isa) {
-    switch (isa) {
-    case FIBRAD_ISA_BEST:
-        return "best";
-    case FIBRAD_ISA_SCALAR:
-        return "scalar";
-    case FIBRAD_ISA_SSE2:
-        return "sse2";
-    case FIBRAD_ISA_AVX2:
-        return "avx2";
-    case FIBRAD_ISA_AVX512:
-        return "avx512";
-    case FIBRAD_ISA_NEON:
-        return "neon";
-    default:
-        return "?";
-    }
+    static const char name[][8] = {"best", "scalar", "sse2", "avx2", "avx512", "neon"};
+    return isa >= FIBRAD_ISA_BEST && isa <= FIBRAD_ISA_NEON ? name[isa] : "?";
 }

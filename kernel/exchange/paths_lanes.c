@@ -48,7 +48,7 @@ struct grey_path {
 };
 
 /* Coordinate d of a path. The first QUASI_COORDINATES coordinates of paths from spheres are those of the additive
- * recurrence with the steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of ray/cast_lanes.c. Those
+ * recurrence with the steps g^-1 ... g^-6, g^7 = g + 1, in units of 2^-64, as for the rays of row/cast_lanes.c. Those
  * of paths from walls are of Sobol's sequence. All further coordinates are random. */
 static double path_coordinate(const fibrad_paths *paths, const struct grey_path *path, uint32_t d) {
     static const uint64_t step[QUASI_COORDINATES] = {UINT64_C(0xe60e2b722b53aeeb), UINT64_C(0xcebd76d9edb6a8ef),
@@ -223,9 +223,9 @@ static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const
     if (known != NULL) {
         if (!known->open) meet_known(paths, known, &hit);
     } else if (path->place != FIBRAD_NONE) {
-        LANED(fibrad_trace)(paths->tracer, path->place, path->n, w, &hit);
+        LANED(fibrad_trace)(scene, paths->tracer, path->place, path->n, w, &hit);
     } else {
-        LANED(fibrad_trace_wall)(paths->tracer, path->point, w, path->triangle, &hit);
+        LANED(fibrad_trace_point)(scene, paths->tracer, path->point, w, path->triangle, &hit);
     }
     if (hit.sphere != FIBRAD_NONE && is_within(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
@@ -483,7 +483,7 @@ static void follow_boxed(fibrad_paths *paths, uint32_t paths_left, uint32_t sobo
         path.sobol = sobol[b];
         start_at_wall(paths, &path);
         direction_about(path.n, point, w);
-        LANED(fibrad_trace_point)(scene, path.point, w, FIBRAD_NO_SIDE, &hit);
+        LANED(fibrad_trace_point)(scene, NULL, path.point, w, FIBRAD_NO_SIDE, &hit);
         paths->rays++;
         const uint32_t wall = fibrad_surroundings_met(scene, path.point, w, __builtin_inf(), &distance);
         if (hit.sphere == FIBRAD_NONE)

@@ -70,6 +70,9 @@ struct fibrad_furnace_tally {
     size_t length;                /* number of counts */
 };
 
+/* Sets divergence, six_flux, wall and power from the fluxes. */
+void fibrad_furnace_balance(fibrad_furnace *furnace);
+
 static inline bool fibrad_tally_fits(const fibrad_furnace *f, const fibrad_furnace_tally *t) {
     return t->cells[0] == f->config.cells[0] && t->cells[1] == f->config.cells[1] && t->cells[2] == f->config.cells[2];
 }

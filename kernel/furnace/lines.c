@@ -93,11 +93,9 @@ static void line_set_walls(fibrad_furnace *f) {
     }
 }
 
-int fibrad_furnace_balance(fibrad_furnace *furnace) {
-    if (furnace == NULL) return FIBRAD_E_ARGUMENT;
+void fibrad_furnace_balance(fibrad_furnace *furnace) {
     line_set_sums(furnace);
     line_set_walls(furnace);
-    return FIBRAD_OK;
 }
 
 /* Solves all lines of all axes for the present E. `divergence` has the source J of the cells before, and the sums

@@ -87,9 +87,9 @@ static double send_groups(fibrad_heat *heat, uint32_t b, double shift, double sl
     for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
         double sum = 0, area = 0;
         next = group_end(heat, a, heat->first[b + 1]);
-        for (uint32_t k = a; k < next; k++) sum += fibrad_heat_sent(heat, k), area += heat->solution.area[k];
+        for (uint32_t k = a; k < next; k++) sum += heat->solution.source[k], area += heat->solution.area[k];
         const double change = rho > 0 && area > 0 ? sum / area : 0;
-        for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, shift + change);
+        for (uint32_t k = a; k < next; k++) heat->solution.source[k] = shift + change;
         if (rho > 0) slope += area * change * change / rho;
     }
     return slope;
@@ -103,9 +103,8 @@ static double given_residual(fibrad_heat *heat, uint32_t b) {
     for (uint32_t a = begin; a < heat->first[b + 1]; a++) {
         const double emission =
             excess != NULL ? heat->sources.emission[b] + excess[a - begin] : heat->sources.emission[b];
-        fibrad_heat_send(heat, a,
-                         heat->solution.area[a] * eps * (emission - heat->solution.radiosity[a]) +
-                             (1 - eps) * heat->solution.net[a]);
+        heat->solution.source[a] =
+            heat->solution.area[a] * eps * (emission - heat->solution.radiosity[a]) + (1 - eps) * heat->solution.net[a];
     }
     return send_groups(heat, b, 0, 0);
 }
@@ -126,10 +125,9 @@ static double free_residual(fibrad_heat *heat, uint32_t b) {
     if (!(body.area > 0)) return 0;
     const double slope = mean_change(heat, b, &body, &shift);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        fibrad_heat_send(heat, a,
-                         heat->solution.area[a] *
-                                 (eps * (body.radiosity - heat->solution.radiosity[a]) - rho * body.net) +
-                             rho * heat->solution.net[a]);
+        heat->solution.source[a] =
+            heat->solution.area[a] * (eps * (body.radiosity - heat->solution.radiosity[a]) - rho * body.net) +
+            rho * heat->solution.net[a];
     return send_groups(heat, b, shift, slope);
 }
 
@@ -160,7 +158,7 @@ static double joined_residual(fibrad_heat *heat, uint32_t b) {
     const double warming = heat->contacts.warming[b], more = heat->sources.emissivity[b] * warming;
     const double slope = fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b) : given_residual(heat, b);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-        fibrad_heat_send(heat, a, fibrad_heat_sent(heat, a) + more);
+        heat->solution.source[a] = heat->solution.source[a] + more;
     return slope + heat->contacts.missing[b] * warming;
 }
 
@@ -389,11 +387,11 @@ static void find_back(fibrad_heat *heat) {
 }
 
 /* Has the next sweep form the net flows of the radiosities. */
-static void send_radiosities(fibrad_heat *heat, fibrad_heat_phase phase) {
+static void send_radiosities(fibrad_heat *heat) {
     shift_black(heat);
-    if (phase == FIBRAD_HEAT_FIRST) find_back(heat);
-    for (uint32_t a = 0; a < heat->patches; a++) fibrad_heat_send(heat, a, heat->solution.radiosity[a]);
-    heat->solution.phase = phase;
+    find_back(heat);
+    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.source[a] = heat->solution.radiosity[a];
+    heat->solution.phase = FIBRAD_HEAT_FIRST;
 }
 
 /* Has the next sweep form what tells the error. Patches of a four send their mean. */
@@ -403,7 +401,7 @@ static void send_means(fibrad_heat *heat) {
             double sum = 0;
             next = end_of_group(a, heat->first[b + 1], FIBRAD_HEAT_FOUR);
             for (uint32_t k = a; k < next; k++) sum += heat->solution.radiosity[k];
-            for (uint32_t k = a; k < next; k++) fibrad_heat_send(heat, k, sum / (next - a));
+            for (uint32_t k = a; k < next; k++) heat->solution.source[k] = sum / (next - a);
         }
     heat->solution.phase = FIBRAD_HEAT_CHECK;
 }
@@ -432,7 +430,7 @@ static void guess_joined(fibrad_heat *heat) {
 /* Has the first sweep of a search form the net flows. */
 static void send_first(fibrad_heat *heat) {
     guess_joined(heat);
-    send_radiosities(heat, FIBRAD_HEAT_FIRST);
+    send_radiosities(heat);
 }
 
 void fibrad_heat_start(fibrad_heat *heat) {
@@ -567,7 +565,7 @@ static void find_left(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) {
         double next = 0;
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
-            next += heat->solution.area[a] * fibrad_heat_sent(heat, a);
+            next += heat->solution.area[a] * heat->solution.source[a];
         all += next;
         heat->solution.left[b] =
             fibrad_max(fibrad_abs(next) * power_of_radiosity(heat, b), fibrad_abs(heat->solution.drift[b]) * rest);
@@ -663,8 +661,8 @@ static bool replaces_given(fibrad_heat *heat, bool coarse) {
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
 static void turn_direction(fibrad_heat *heat, double keep) {
     for (uint32_t a = 0; a < heat->patches; a++) {
-        heat->solution.direction[a] = fibrad_heat_sent(heat, a) + (keep != 0 ? keep * heat->solution.direction[a] : 0);
-        fibrad_heat_send(heat, a, heat->solution.direction[a]);
+        heat->solution.direction[a] = heat->solution.source[a] + (keep != 0 ? keep * heat->solution.direction[a] : 0);
+        heat->solution.source[a] = heat->solution.direction[a];
     }
     for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
         heat->contacts.direction[b] = heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
@@ -683,7 +681,7 @@ static void refine_patches(fibrad_heat *heat) {
         heat->solution.radiosity[a] += heat->solution.detail[a];
         heat->solution.detail[a] = -coarse;
     }
-    send_radiosities(heat, FIBRAD_HEAT_FIRST);
+    send_radiosities(heat);
 }
 
 /* Goes to the finer level, or to the end. */
@@ -834,7 +832,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
             return;
         }
         if (replaced && fibrad_heat_is_entered(heat)) {
-            send_radiosities(heat, FIBRAD_HEAT_FIRST);
+            send_radiosities(heat);
             return;
         }
         restart = restart || replaced;

@@ -7,10 +7,6 @@
 /* Chooses the sequence of spheres in sweeps, and the part of each row. */
 void fibrad_heat_divide(fibrad_heat *heat);
 
-/* Sets, and returns, what patch a sends in the next sweep. */
-static inline void fibrad_heat_send(fibrad_heat *heat, uint32_t a, double value) { heat->solution.source[a] = value; }
-static inline double fibrad_heat_sent(const fibrad_heat *heat, uint32_t a) { return heat->solution.source[a]; }
-
 /* The net flow to each patch after all parts are swept: [patches]. After the sweep FIBRAD_HEAT_AREA: areas. */
 const double *fibrad_heat_gathered(fibrad_heat *heat);
 

@@ -40,12 +40,13 @@ uint32_t fibrad_light_count(const fibrad_light *light) {
     return (uint32_t)fibrad_min(FIBRAD_LIGHT_DIRECTIONS_DEFAULT * wide * wide, FIBRAD_LIGHT_DIRECTIONS_MAX);
 }
 
-/* Direction k of a cone: the disc of its sines is filled evenly, as a sunflower is. */
-static void light_frame(const fibrad_light *light, uint32_t k, double frame[9]) {
+/* Direction k of a cone: the disc of its sines is filled evenly, as a sunflower is. So equal parts of what a plane
+ * across the axis of the cone receives come from each. Returns the flux across the direction. */
+static double light_frame(const fibrad_light *light, uint32_t k, double frame[9]) {
     const uint32_t n = fibrad_light_count(light);
     double middle[9], cosine, sine;
     middle_frame(light, frame);
-    if (n == 1) return;
+    if (n == 1) return light->flux;
     fibrad_copy(middle, frame, sizeof middle);
     double s, c;
     fibrad_sincos_turn(light->half_angle / (2 * FIBRAD_PI), &s, &c);
@@ -53,6 +54,7 @@ static void light_frame(const fibrad_light *light, uint32_t k, double frame[9]) 
     fibrad_azimuth(k, &cosine, &sine);
     for (int a = 0; a < 3; a++) frame[6 + a] = up * middle[6 + a] + ring * (cosine * middle[a] + sine * middle[3 + a]);
     fibrad_frame_about(frame + 6, frame, frame + 3);
+    return light->flux / (n * up);
 }
 
 static bool is_within(double x, double low, double high) { return x >= low && x <= high; }
@@ -418,7 +420,7 @@ static void find_bounds(fibrad_footprint *f) {
 
 void fibrad_footprint_make(fibrad_footprint *f, const fibrad_scene *scene, const fibrad_light *light, uint32_t k) {
     const fibrad_container *c = &scene->container;
-    light_frame(light, k, f->frame);
+    f->flux = light_frame(light, k, f->frame);
     f->pieces = f->far = 0;
     f->start.corners = 0;
     fibrad_zero(f->image, sizeof f->image);

@@ -51,6 +51,7 @@ typedef struct fibrad_light_arc {
 
 typedef struct fibrad_footprint {
     double frame[9];                    /* axes u and v, and the direction towards the light */
+    double flux;                        /* of the light in this direction, across it */
     double origin[3];                   /* L, where u = v = 0 and the depth is 0 */
     double low[3], high[3];             /* L, box about the bed: walls, periods or spheres */
     double bound_low[2], bound_high[2]; /* L, u and v of the whole cross-section */

@@ -73,67 +73,12 @@ int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibra
         fibrad_footprint_make(f, scene, light, k);
         for (uint32_t p = 0; p < f->pieces; p++) area[f->piece[p].slot] += f->piece[p].sign * f->piece[p].area;
         all += fibrad_footprint_area(f);
-        fibrad_light_add_ends(scene, area, light->flux / count, &sum);
+        fibrad_light_add_ends(scene, area, f->flux, &sum);
     }
     if (!(all > 0)) {
         if (fault != NULL) fault->why = FIBRAD_WHY_DARK;
         return FIBRAD_E_ARGUMENT;
     }
     *ends = sum;
-    return FIBRAD_OK;
-}
-
-/* Adds what one sphere takes in one direction. */
-static int take_one(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place, double flux, double *power,
-                    fibrad_light_ends *kept) {
-    fibrad_footprint *f = fibrad_light_footprint(space);
-    const double centre[3] = {scene->x[place], scene->y[place], scene->z[place]};
-    double area[FIBRAD_SLOTS] = {0}, open = 0, uv[2];
-    const int status =
-        FIBRAD_VERSION_OF(fibrad_sunlit, scene->facts.isa)(scene, space, place, f->frame, NULL, &open, &f->unshadowed);
-    if (status != FIBRAD_OK) return status;
-    fibrad_footprint_place(f, centre, uv);
-    if (open > 0) fibrad_footprint_share(f, &space->areas, open, uv, scene->r[place], area);
-    for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) *power += flux * area[slot];
-    fibrad_light_add_ends(scene, area, flux, kept);
-    return FIBRAD_OK;
-}
-
-/* All directions of a light, once. Errors: as of one sphere; FIBRAD_E_ARGUMENT: no open face lets the light in. */
-static int take_all(const fibrad_scene *scene, fibrad_workspace *space, const fibrad_light *light, uint32_t from,
-                    uint32_t to, double *power, fibrad_light_ends *kept) {
-    const uint32_t count = fibrad_light_count(light);
-    double all = 0;
-    int status = FIBRAD_OK;
-    *kept = (fibrad_light_ends){0};
-    fibrad_zero(power, (to - from) * sizeof *power);
-    for (uint32_t k = 0; k < count && status == FIBRAD_OK; k++) {
-        fibrad_footprint_make(fibrad_light_footprint(space), scene, light, k);
-        all += fibrad_footprint_area(fibrad_light_footprint(space));
-        for (uint32_t i = from; i < to && status == FIBRAD_OK; i++)
-            status = take_one(scene, space, scene->place[i], light->flux / count, &power[i - from], kept);
-    }
-    for (uint32_t i = from; i < to; i++) kept->spheres += power[i - from];
-    return status != FIBRAD_OK || all > 0 ? status : FIBRAD_E_ARGUMENT;
-}
-
-/* The powers are added up in work memory, so that an error leaves those of the caller as they are. */
-int fibrad_light_spheres(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, uint32_t from,
-                         uint32_t to, double *power, fibrad_light_ends *kept) {
-    fibrad_workspace *space;
-    fibrad_light_ends sum;
-    if (work == NULL || kept == NULL || (to > from && power == NULL)) return FIBRAD_E_ARGUMENT;
-    int status = fibrad_light_check(scene, light, NULL);
-    if (status == FIBRAD_OK && (from > to || to > scene->facts.spheres)) status = FIBRAD_E_ARGUMENT;
-    const size_t bytes = (to - from) * sizeof *power;
-    if (status == FIBRAD_OK) status = fibrad_light_open(scene, work, bytes, &space);
-    while (status == FIBRAD_OK) {
-        status = take_all(scene, space, light, from, to, fibrad_light_scratch(space), &sum);
-        if (status != FIBRAD_E_WORK) break;
-        status = fibrad_light_grow(work, bytes, &space);
-    }
-    if (status != FIBRAD_OK) return status;
-    if (bytes > 0) fibrad_copy(power, fibrad_light_scratch(space), bytes);
-    *kept = sum;
     return FIBRAD_OK;
 }

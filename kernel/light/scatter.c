@@ -81,9 +81,9 @@ static uint32_t reflect_ray(const fibrad_heat *heat, const light_place *from, co
     fibrad_hit hit = {0};
     fibrad_heat_direction(x, from->normal, w);
     if (from->sphere != FIBRAD_NONE)
-        FIBRAD_VERSION_OF(fibrad_trace_once, scene->facts.isa)(scene, from->sphere, from->normal, w, &hit);
+        FIBRAD_VERSION_OF(fibrad_trace, scene->facts.isa)(scene, NULL, from->sphere, from->normal, w, &hit);
     else
-        FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, from->at, w, from->except, &hit);
+        FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, NULL, from->at, w, from->except, &hit);
     const uint32_t patch = patch_met(heat, from->at, w, &hit);
     if (patch == FIBRAD_NONE) *back = fibrad_side_number(&scene->mesh, hit.side);
     return patch;
@@ -103,7 +103,7 @@ static int follow_light(const fibrad_heat *heat, const fibrad_footprint *f, uint
     for (int a = 0; a < 2; a++) uv[a] = f->bound_low[a] + x[a] * (f->bound_high[a] - f->bound_low[a]);
     if (!fibrad_footprint_lights(f, uv, &piece)) return FIBRAD_OK;
     fibrad_footprint_enters(f, piece, uv, at);
-    FIBRAD_VERSION_OF(fibrad_trace_point, heat->scene->facts.isa)(heat->scene, at, d, FIBRAD_NO_SIDE, &hit);
+    FIBRAD_VERSION_OF(fibrad_trace_point, heat->scene->facts.isa)(heat->scene, NULL, at, d, FIBRAD_NO_SIDE, &hit);
     ray->slot = f->piece[piece].slot;
     ray->first = ray->second = patch_met(heat, at, d, &hit);
     if (ray->first == FIBRAD_NONE)

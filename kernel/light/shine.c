@@ -143,7 +143,7 @@ static void spread_on_sphere(const shining *s, const fibrad_points *points, cons
 }
 
 /* Adds what the sphere at a place takes in one direction. *takes: out: that. */
-static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uint32_t place, double flux, double *hits,
+static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uint32_t place, double *hits,
                            fibrad_light_ends *kept, double *takes) {
     const fibrad_scene *scene = heat->scene;
     fibrad_footprint *f = fibrad_light_footprint(space);
@@ -159,10 +159,10 @@ static int shine_on_sphere(const fibrad_heat *heat, fibrad_workspace *space, uin
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) sum += area[slot];
     if (!(sum > 0)) return FIBRAD_OK;
     s.whole = sum >= open * s.r * s.r;
-    spread_on_sphere(&s, &points, &space->areas, flux * sum, hits);
-    fibrad_light_add_ends(scene, area, flux, kept);
-    kept->spheres += flux * sum;
-    *takes = flux * sum;
+    spread_on_sphere(&s, &points, &space->areas, f->flux * sum, hits);
+    fibrad_light_add_ends(scene, area, f->flux, kept);
+    kept->spheres += f->flux * sum;
+    *takes = f->flux * sum;
     return FIBRAD_OK;
 }
 
@@ -181,7 +181,7 @@ static int shine_on_spheres(const fibrad_heat *heat, fibrad_workspace *space, co
         all += fibrad_footprint_area(f);
         for (uint32_t place = begin; place < end && status == FIBRAD_OK; place++) {
             double takes = 0;
-            status = shine_on_sphere(heat, space, place, light->flux / count, hits, kept, &takes);
+            status = shine_on_sphere(heat, space, place, hits, kept, &takes);
             if (count > 1) apart[place - begin] += k % 2 ? -takes : takes;
         }
     }

@@ -47,7 +47,7 @@ int LANED(fibrad_sunlit)(const fibrad_scene *scene, fibrad_workspace *space, uin
     if (space->disc.count > space->disc.capacity || space->areas.overflow) return fibrad_work_discs_missed(space);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     if (!(*open > 0)) return FIBRAD_OK;
-    if (points != NULL && find_open_points(space, points) != FIBRAD_OK) return FIBRAD_E_TABLE;
+    if (find_open_points(space, points) != FIBRAD_OK) return FIBRAD_E_TABLE;
     space->clear_mesh = scene->clear != NULL ? scene->clear[place] : __builtin_inf();
     return find_unshadowed(space, frame, unshadowed);
 }

@@ -10,7 +10,7 @@
 #define FIBRAD_SUNLIT_POINTS 256u
 
 /* Resolves the window of the sphere at `place` in one direction, and leaves it in space->areas. points: gets the points
- * of the window that no sphere hides; NULL: they are not asked for. *open: the open area, in units of the radius
+ * of the window that no sphere hides. *open: the open area, in units of the radius
  * squared, whatever triangles hide. unshadowed: gets the part that no triangle hides. Errors: FIBRAD_E_WORK, _TABLE. */
 typedef int fibrad_sunlit_function(const fibrad_scene *scene, fibrad_workspace *space, uint32_t place,
                                    const double frame[9], fibrad_points *points, double *open,

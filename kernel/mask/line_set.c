@@ -21,8 +21,6 @@ uint32_t fibrad_chords_for(uint32_t n) { return n <= 80 ? 16 : n <= 250 ? 32 : n
 
 uint32_t fibrad_line_set_lines(uint32_t lines) { return fibrad_lines_next(lines); }
 
-uint32_t fibrad_line_set_count(const fibrad_line_set *set) { return set != NULL ? set->n : 0; }
-
 size_t fibrad_line_set_size(uint32_t lines) {
     fibrad_arena arena = {0};
     fibrad_line_set fields = {0};

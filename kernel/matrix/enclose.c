@@ -6,6 +6,7 @@
  * errors. Then all rows are brought to 1 together, X_pq u_p u_q, where walls are rows as spheres are.
  * docs/methods.md section 16. */
 #include "base/constants.h"
+#include "base/linear.h"
 #include "matrix/matrix.h"
 
 #define CLOSED_TO     1e-14
@@ -68,46 +69,35 @@ static double rest_wanted(fibrad_matrix *m, uint32_t b) {
     return fibrad_max(wanted, 0.5 * rest);
 }
 
-/* Solves n linear equations in place. a: [n][n]. Rows that depend linearly on those before are left out. */
-static void solve_linear(uint32_t n, double *a, double *x) {
-    for (uint32_t k = 0; k < n; k++) {
-        for (uint32_t i = k + 1; i < n && a[k * n + k] > 1e-12; i++) {
-            const double part = a[i * n + k] / a[k * n + k];
-            for (uint32_t j = k; j < n; j++) a[i * n + j] -= part * a[k * n + j];
-            x[i] -= part * x[k];
-        }
-    }
-    for (uint32_t k = n; k-- > 0;) {
-        for (uint32_t j = k + 1; j < n; j++) x[k] -= a[k * n + j] * x[j];
-        x[k] = a[k * n + k] > 1e-12 ? x[k] / a[k * n + k] : 0;
-    }
-}
-
 /* Finds v with v_b (fixed_b + sum over c of D_bc v_c) = wanted_b. In the logarithms of v this is the minimum of a
  * convex function. Newton's method finds it. Simple iterations would never end if two walls see little but each
  * other. Returns the largest error of the last step. */
 static double balance_walls(const fibrad_matrix *m, const double fixed[], const double wanted[], double v[]) {
+    const uint32_t wide = m->walls + 1;
     double worst = 0;
     for (int step = 0; step < OWN_STEPS; step++) {
-        double *a = m->newton, x[FIBRAD_WALLS_MAX] = {0};
         worst = 0;
-        fibrad_zero(a, m->walls * m->walls * sizeof *a);
+        fibrad_zero(m->newton, m->walls * wide * sizeof *m->newton);
         for (uint32_t b = 0; b < m->walls; b++) {
-            a[b * m->walls + b] = 1;
+            double *row = m->newton + b * wide;
+            row[b] = 1;
             if (m->length[b] == 0) continue;
             double sum = v[b] * fixed[b];
             for (uint32_t c = 0; c < m->walls; c++) {
                 const double part = v[b] * *between(m, b, c) * v[c];
                 sum += part;
-                a[b * m->walls + c] = m->length[c] > 0 ? part : 0;
+                row[c] = m->length[c] > 0 ? part : 0;
             }
-            a[b * m->walls + b] += sum;
-            x[b] = wanted[b] - sum;
-            worst = fibrad_max(worst, fibrad_abs(x[b]));
+            row[b] += sum;
+            row[m->walls] = wanted[b] - sum;
+            worst = fibrad_max(worst, fibrad_abs(row[m->walls]));
         }
         if (worst <= CLOSED_TO / 8) return worst;
-        solve_linear(m->walls, a, x);
-        for (uint32_t b = 0; b < m->walls; b++) v[b] = x[b] > 0 ? v[b] * (1 + fibrad_min(x[b], 1)) : v[b] / (1 - x[b]);
+        fibrad_solve_linear(m->walls, wide, m->newton);
+        for (uint32_t b = 0; b < m->walls; b++) {
+            const double x = m->newton[b * wide + m->walls];
+            v[b] = x > 0 ? v[b] * (1 + fibrad_min(x, 1)) : v[b] / (1 - x);
+        }
     }
     return worst;
 }

@@ -15,13 +15,7 @@
 #define RAW_ERROR      5.0   /* the change of raw rows along lines over their error: all of 27,000 rows are below it */
 #define LEAST_ERROR    1e-12 /* least change of a row that is compared with its error; smaller changes are rounding */
 
-static uint32_t tasks_of(const fibrad_matrix_rule *rule) {
-    if (rule == NULL || rule->raw || rule->tasks == 0) return 1;
-    return rule->tasks;
-}
-
 static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
-    if (rule == NULL) return true;
     const bool exchange = rule->kind == FIBRAD_ROWS_EXCHANGE;
     if (rule->kind < FIBRAD_ROWS_AREAS || rule->kind > FIBRAD_ROWS_EXCHANGE) return false;
     if (rule->emissivity != NULL ? !exchange : exchange && scene->facts.spheres > 0) return false;
@@ -96,19 +90,18 @@ static fibrad_matrix *matrix_layout(fibrad_arena *arena, fibrad_matrix *m) {
 
 /* Sets the numbers that follow from the arguments. False: an argument is not valid. */
 static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
-                             const fibrad_matrix_rule *rule) {
-    if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, rule)) return false;
+                             const fibrad_matrix_rule *given) {
+    const fibrad_matrix_rule rule = given != NULL ? *given : (fibrad_matrix_rule){0};
+    if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, &rule)) return false;
     bool lines;
-    const uint64_t entries = entries_of(scene, rows, count, rule != NULL ? rule->emissivity : NULL, &lines);
-    *m = (fibrad_matrix){.walls = scene->facts.walls, .tasks = tasks_of(rule)};
-    m->raw = rule != NULL && rule->raw;
-    m->exchange = rule != NULL && rule->kind == FIBRAD_ROWS_EXCHANGE;
-    m->sampled = rule != NULL && rule->kind != FIBRAD_ROWS_AREAS;
+    const uint64_t entries = entries_of(scene, rows, count, rule.emissivity, &lines);
+    *m = (fibrad_matrix){.walls = scene->facts.walls, .tasks = rule.raw || rule.tasks == 0 ? 1 : rule.tasks};
+    m->raw = rule.raw != 0;
+    m->exchange = rule.kind == FIBRAD_ROWS_EXCHANGE;
+    m->sampled = rule.kind != FIBRAD_ROWS_AREAS;
     m->lines = lines && !m->raw && !m->sampled;
-    m->enclosed = rule != NULL && rule->wall_row != NULL;
-    m->drop = rule != NULL ? rule->drop : 0;
-    m->parallel = rule != NULL ? rule->parallel : NULL;
-    m->context = rule != NULL ? rule->context : NULL;
+    m->enclosed = rule.wall_row != NULL;
+    m->drop = rule.drop, m->parallel = rule.parallel, m->context = rule.context;
     m->result.n = scene->facts.spheres;
     m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;

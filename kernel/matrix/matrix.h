@@ -108,9 +108,6 @@ static inline uint64_t fibrad_first_entry(const uint32_t *col, uint64_t length, 
 /* The sum of row i. */
 double fibrad_sparse_sum(const fibrad_sparse *rows, uint32_t i);
 
-/* The position of column j in row i, or UINT64_MAX. */
-uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j);
-
 /* One step of the iteration for u. scratch holds three arrays of n elements: given, u, and the u before, which becomes
  * the next u.
  *   closing false  u_i sum_j F_ij u_j = given_i

@@ -1,7 +1,8 @@
 /* scale.c - corrects the row sums of sparse reciprocal rows, and drops small entries. SPDX-License-Identifier: MIT */
 #include "matrix/matrix.h"
 
-uint64_t fibrad_sparse_find(const fibrad_sparse *rows, uint32_t i, uint32_t j) {
+/* The position of column j in row i, or UINT64_MAX. */
+static uint64_t find_entry(const fibrad_sparse *rows, uint32_t i, uint32_t j) {
     const uint64_t start = rows->start[i], end = rows->start[i + 1];
     const uint64_t at = start + fibrad_first_entry(rows->col + start, end - start, j);
     return at < end && rows->col[at] == j ? at : UINT64_MAX;
@@ -27,7 +28,7 @@ static void take_out(fibrad_sparse *rows, const double *r, double threshold) {
     for (uint32_t i = 0; i < rows->n; i++)
         for (uint64_t k = rows->start[i]; k < rows->start[i + 1]; k++) {
             uint32_t j = rows->col[k];
-            uint64_t partner = fibrad_sparse_find(rows, j, i);
+            uint64_t partner = find_entry(rows, j, i);
             if (j == i || rows->f[k] < 0 || (j < i && partner != UINT64_MAX)) continue; /* the other row decides */
             double f = rows->f[k], back = r[i] / r[j] * (r[i] / r[j]) * f;              /* F_ji */
             if (f >= threshold || back >= threshold) continue;
@@ -159,11 +160,11 @@ static void fill_up(fibrad_sparse *rows, const double *target) {
     double rounding = 4e-15;
     uint64_t wanted = 0;
     for (uint32_t i = 0; i < rows->n; i++)
-        if (target[i] - fibrad_sparse_sum(rows, i) > rounding && fibrad_sparse_find(rows, i, i) == UINT64_MAX) wanted++;
+        if (target[i] - fibrad_sparse_sum(rows, i) > rounding && find_entry(rows, i, i) == UINT64_MAX) wanted++;
     uint64_t from = rows->start[rows->n], to = from + wanted;
     for (uint32_t i = rows->n; i-- > 0;) {
         double lack = target[i] - fibrad_sparse_sum(rows, i);
-        uint64_t diagonal = fibrad_sparse_find(rows, i, i);
+        uint64_t diagonal = find_entry(rows, i, i);
         if (diagonal != UINT64_MAX && lack > rounding) rows->f[diagonal] += lack;
         bool insert = diagonal == UINT64_MAX && lack > rounding;
         uint64_t end = to;

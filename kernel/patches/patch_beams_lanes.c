@@ -9,6 +9,7 @@
 #include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
+#include "row/wall_share_lanes.h"
 #include "sample/direction.h"
 #include "scene/walls.h"
 #include "row/window_lanes.h"
@@ -162,6 +163,17 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
  * then smaller. Otherwise beams would meet walls that are hidden: docs/methods.md section 9. */
 #define HIT_SPREAD 2.25 /* radius of the disc if the window is open, times sqrt n */
 
+/* Whether two directions from a point meet different walls, and one of them rises and the other falls across a plane.
+ * Between them other spheres may come in view, at any distance. */
+static bool crosses_horizon(const fibrad_scene *scene, const double origin[3], const double a[3], const double b[3]) {
+    const fibrad_container *c = &scene->container;
+    bool crosses = false;
+    double distance;
+    for (int axis = 0; axis < 3; axis++)
+        if (c->low[axis] > -__builtin_inf() || c->high[axis] < __builtin_inf()) crosses |= a[axis] * b[axis] < 0;
+    return crosses && fibrad_walls_exit(scene, origin, a, &distance) != fibrad_walls_exit(scene, origin, b, &distance);
+}
+
 /* The patch that the beam of open point p of window k meets. */
 static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *work, const double frame[9],
                              const fibrad_points *points, uint32_t k, uint32_t p) {
@@ -171,11 +183,11 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
     if (!heat->scene->container.walls) return fibrad_heat_open(heat);
     for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
     const uint32_t behind = fibrad_walls_behind(heat->scene, work->place, n, origin);
-    if (behind != FIBRAD_NONE) return fibrad_heat_cap_patch(heat, behind, origin);
+    if (behind != FIBRAD_NONE) return fibrad_heat_wall_patch(heat, behind, origin, false);
     if (work->met != NULL && work->met->any &&
         (work->met->aside[0][p] != 0 || work->met->aside[1][p] != 0)) { /* on the line that meets no triangle */
         LANED(fibrad_mesh_line)(work, frame, p, origin, w);
-        return fibrad_heat_leaves(heat, origin, w);
+        return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
     }
     const uint32_t other = fibrad_points_partner(heat->config.points, p, k);
     const double a = set->x[other], b = set->y[other];
@@ -188,7 +200,13 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
         origin[axis] = work->centre[axis] + work->unit * n[axis];
         w[axis] = g + (du * e + dv * f);
     }
-    return fibrad_heat_leaves(heat, origin, w);
+    if (crosses_horizon(heat->scene, origin, frame + 6, w)) {
+        const double length = fibrad_sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]), at[2] = {x, y};
+        const double way[3] = {w[0] / length, w[1] / length, w[2] / length};
+        if (!LANED(fibrad_beam_turned)(work, frame, at, way))
+            return fibrad_heat_ends(heat, origin, frame + 6, FIBRAD_NO_SIDE, 0);
+    }
+    return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
 }
 
 /* Keeps the beams of a word of window k that meet spheres. Returns the end of the beams that are kept. */
@@ -311,10 +329,11 @@ static int follow_ray(const fibrad_heat *heat, fibrad_workspace *work, uint32_t 
     const bool starts = slot < FIBRAD_WALLS ? fibrad_heat_wall_ray(heat, slot, k, origin, w)
                                             : fibrad_heat_mesh_ray(heat, slot - FIBRAD_MESHES, k, origin, w, &side);
     if (!starts) return FIBRAD_OK;
-    LANED(fibrad_trace_point)(heat->scene, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
+    LANED(fibrad_trace_point)
+    (heat->scene, NULL, origin, w, side == FIBRAD_NO_SIDE ? side : fibrad_side_triangle(side), &hit);
     if (hit.sphere != FIBRAD_NONE) return FIBRAD_OK;
-    ray->from =
-        slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin) : fibrad_heat_mesh_patch(heat, side, origin);
+    ray->from = slot < FIBRAD_WALLS ? fibrad_heat_wall_patch(heat, slot, origin, true)
+                                    : fibrad_heat_mesh_patch(heat, side, origin);
     if (fibrad_heat_fine_of(heat, ray->from) != FIBRAD_NONE) return FIBRAD_OK; /* these have rays of their own */
     ray->to = fibrad_heat_ends(heat, origin, w, hit.side, hit.distance);
     if (ray->to == FIBRAD_NONE) {
@@ -339,13 +358,13 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
     const uint32_t behind = sphere ? fibrad_walls_behind(scene, body, ray->normal, at) : FIBRAD_NONE;
     beam->from = (uint16_t)ray->patch;
     if (behind != FIBRAD_NONE) {
-        *next = keep_other(heat, work, ray->k, beam->from, fibrad_heat_cap_patch(heat, behind, at), true, beam);
+        *next = keep_other(heat, work, ray->k, beam->from, fibrad_heat_wall_patch(heat, behind, at, false), true, beam);
         return true;
     }
     if (sphere)
-        LANED(fibrad_trace_once)(scene, body, ray->normal, ray->direction, &hit);
+        LANED(fibrad_trace)(scene, NULL, body, ray->normal, ray->direction, &hit);
     else
-        LANED(fibrad_trace_point)(scene, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
+        LANED(fibrad_trace_point)(scene, NULL, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
     if (hit.sphere != FIBRAD_NONE && !sphere && hit.distance == 0 && scene->container.cuts) return true;
     *next = beam + 1;
     if (hit.sphere != FIBRAD_NONE) {

@@ -173,7 +173,7 @@ bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double
     return inside;
 }
 
-static uint32_t patch_at(const fibrad_heat *heat, uint32_t wall, const double at[3], bool may_be_fine) {
+uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3], bool may_be_fine) {
     const uint32_t *squares = heat->wall[wall].squares, body = fibrad_heat_body(heat, wall);
     double place[2];
     uint32_t cell[2];
@@ -184,14 +184,6 @@ static uint32_t patch_at(const fibrad_heat *heat, uint32_t wall, const double at
     return may_be_fine ? fibrad_heat_patch_in_four(heat, body, patch, place[0] / 2 - (cell[0] >> 1),
                                                    place[1] / 2 - (cell[1] >> 1))
                        : heat->first[body] + patch;
-}
-
-uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
-    return patch_at(heat, wall, at, true);
-}
-
-uint32_t fibrad_heat_cap_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]) {
-    return patch_at(heat, wall, at, false);
 }
 
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch) {
@@ -210,11 +202,7 @@ uint32_t fibrad_heat_ends(const fibrad_heat *heat, const double origin[3], const
     const bool meshed = side != FIBRAD_NO_SIDE && (wall == FIBRAD_NONE || length < distance);
     if (!meshed && wall == FIBRAD_NONE) return fibrad_heat_open(heat);
     for (int axis = 0; axis < 3; axis++) at[axis] = origin[axis] + (meshed ? length : distance) * w[axis];
-    return meshed ? fibrad_heat_mesh_patch(heat, side, at) : fibrad_heat_wall_patch(heat, wall, at);
-}
-
-uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]) {
-    return fibrad_heat_ends(heat, origin, w, FIBRAD_NO_SIDE, 0);
+    return meshed ? fibrad_heat_mesh_patch(heat, side, at) : fibrad_heat_wall_patch(heat, wall, at, true);
 }
 
 /* A direction by the cosine law from two numbers in [0, 1). normal, across, along: orthogonal unit vectors. */

@@ -28,12 +28,9 @@ bool fibrad_heat_wall_place(const fibrad_heat *heat, uint32_t wall, const double
 /* Whether the squares at both ends of an edge are neighbours. */
 bool fibrad_heat_wall_wraps(const fibrad_heat *heat, uint32_t wall, uint32_t side);
 
-/* The patch of a wall at a point on it [L]. */
-uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
-
-/* The patch of a wall that exchanges with the cap of a sphere behind it. It is never a fine patch: rays of fine patches
- * do not meet caps. */
-uint32_t fibrad_heat_cap_patch(const fibrad_heat *heat, uint32_t wall, const double at[3]);
+/* The patch of a wall at a point on it [L]. may_be_fine: false for the patch that exchanges with the cap of a sphere
+ * behind the wall: rays of fine patches do not meet caps. */
+uint32_t fibrad_heat_wall_patch(const fibrad_heat *heat, uint32_t wall, const double at[3], bool may_be_fine);
 
 /* The patch at a point [L] on a side of a mesh, or on an image of the side. FIBRAD_NONE: the side belongs to no wall.
  */
@@ -41,10 +38,6 @@ uint32_t fibrad_heat_mesh_patch(const fibrad_heat *heat, uint32_t side, const do
 
 /* Rays per area that the wall of a patch sends out. 0: the patch belongs to no wall. */
 double fibrad_heat_wall_density(const fibrad_heat *heat, uint32_t patch);
-
-/* The patch where a ray ends that meets neither a sphere nor a triangle: that of a plane, the cylinder or the
- * surroundings. */
-uint32_t fibrad_heat_leaves(const fibrad_heat *heat, const double origin[3], const double w[3]);
 
 /* The patch where a ray ends that meets no sphere. w: unit vector. side, length: what the ray meets of the meshes, or
  * FIBRAD_NO_SIDE. FIBRAD_NONE: the ray ends on a side that belongs to no wall. */

@@ -223,27 +223,20 @@ static void meet_mesh_from(const fibrad_scene *scene, uint32_t place, const doub
     meet_mesh_before(scene, origin, w, FIBRAD_NO_SIDE, hit);
 }
 
-void LANED(fibrad_trace)(fibrad_tracer *tracer, uint32_t place, const double n[3], const double w[3], fibrad_hit *hit) {
-    const fibrad_scene *scene = tracer->scene;
-    const fibrad_nearby *list = fibrad_tracer_nearby(tracer, place);
-    double unit = scene->r[place];
-    struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
+void LANED(fibrad_trace)(const fibrad_scene *scene, fibrad_tracer *tracer, uint32_t place, const double n[3],
+                         const double w[3], fibrad_hit *hit) {
+    const double unit = scene->r[place];
+    const struct trace_ray ray = {scene, n,        w,    {scene->x[place], scene->y[place], scene->z[place]},
+                                  unit,  1 / unit, place};
     struct trace_first first = {.distance = __builtin_inf()};
-    const struct trace_cull cull = cull_of(n, w, 0, -list->behind);
-    const double known = intersect_list(&ray, list, 1, &cull, &first);
+    double known = -1;
+    if (tracer != NULL) {
+        const fibrad_nearby *list = fibrad_tracer_nearby(tracer, place);
+        const struct trace_cull cull = cull_of(n, w, 0, -list->behind);
+        known = intersect_list(&ray, list, 1, &cull, &first);
+    }
     /* spheres that overlap this one count also behind the origin, if their centres are ahead */
-    double from = known >= 0 ? known : -fibrad_dot(n, w);
-    if (!(first.distance < known)) walk_ray(&ray, from, &first);
-    write_hit(&ray, &first, hit);
-    if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
-}
-
-void LANED(fibrad_trace_once)(const fibrad_scene *scene, uint32_t place, const double n[3], const double w[3],
-                              fibrad_hit *hit) {
-    double unit = scene->r[place];
-    struct trace_ray ray = {scene, n, w, {scene->x[place], scene->y[place], scene->z[place]}, unit, 1 / unit, place};
-    struct trace_first first = {.distance = __builtin_inf()};
-    walk_ray(&ray, -fibrad_dot(n, w), &first);
+    if (!(first.distance < known)) walk_ray(&ray, known >= 0 ? known : -fibrad_dot(n, w), &first);
     write_hit(&ray, &first, hit);
     if (scene->clear != NULL) meet_mesh_from(scene, place, n, w, hit);
 }
@@ -266,9 +259,8 @@ static double intersect_near(const struct trace_ray *ray, fibrad_tracer *tracer,
     return fibrad_max(0, intersect_list(ray, list, radius * ray->inverse, &cull, first));
 }
 
-/* Follows a ray from a point. tracer: NULL: without lists. */
-static void trace_from(const fibrad_scene *scene, fibrad_tracer *tracer, const double point[3], const double w[3],
-                       uint32_t except, fibrad_hit *hit) {
+void LANED(fibrad_trace_point)(const fibrad_scene *scene, fibrad_tracer *tracer, const double point[3],
+                               const double w[3], uint32_t except, fibrad_hit *hit) {
     static const double origin[3] = {0, 0, 0};
     hit->sphere = FIBRAD_NONE, hit->side = FIBRAD_NO_SIDE;
     if (scene->facts.spheres > 0) {
@@ -281,14 +273,4 @@ static void trace_from(const fibrad_scene *scene, fibrad_tracer *tracer, const d
         write_hit(&ray, &first, hit);
     }
     if (scene->clear != NULL) meet_mesh_before(scene, point, w, except, hit);
-}
-
-void LANED(fibrad_trace_point)(const fibrad_scene *scene, const double point[3], const double w[3], uint32_t except,
-                               fibrad_hit *hit) {
-    trace_from(scene, NULL, point, w, except, hit);
-}
-
-void LANED(fibrad_trace_wall)(fibrad_tracer *tracer, const double point[3], const double w[3], uint32_t except,
-                              fibrad_hit *hit) {
-    trace_from(tracer->scene, tracer, point, w, except, hit);
 }

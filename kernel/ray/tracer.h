@@ -114,25 +114,15 @@ const fibrad_nearby *fibrad_tracer_cell_of(fibrad_tracer *tracer, const double p
 /* Follows a ray from the sphere at `place`. It leaves at the point with outward normal n [unit vector] in direction
  * w [unit vector, n.w >= 0]. Spheres count as for beams: a sphere counts if its centre lies ahead of this one's and
  * the ray passes through its disc. A sphere that contains the origin is met at distance 0. Its `normal` is where the
- * line enters it behind the origin. */
-typedef void fibrad_trace_function(fibrad_tracer *tracer, uint32_t place, const double n[3], const double w[3],
-                                   fibrad_hit *hit);
+ * line enters it behind the origin. tracer: NULL: there are no lists, and the ray goes through the grid alone. */
+typedef void fibrad_trace_function(const fibrad_scene *scene, fibrad_tracer *tracer, uint32_t place, const double n[3],
+                                   const double w[3], fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_function, fibrad_trace);
 
-/* The same without lists, through the grid alone. */
-typedef void fibrad_trace_once_function(const fibrad_scene *scene, uint32_t place, const double n[3], const double w[3],
-                                        fibrad_hit *hit);
-FIBRAD_DECLARE_VERSIONS(fibrad_trace_once_function, fibrad_trace_once);
-
 /* Follows a ray from any point [L] in direction w. A sphere that contains the point is met at distance 0. except: a
- * triangle on which the point lies, which is not met; or FIBRAD_NO_SIDE. */
-typedef void fibrad_trace_point_function(const fibrad_scene *scene, const double point[3], const double w[3],
-                                         uint32_t except, fibrad_hit *hit);
+ * triangle on which the point lies, which is not met; or FIBRAD_NO_SIDE. tracer: as for fibrad_trace. */
+typedef void fibrad_trace_point_function(const fibrad_scene *scene, fibrad_tracer *tracer, const double point[3],
+                                         const double w[3], uint32_t except, fibrad_hit *hit);
 FIBRAD_DECLARE_VERSIONS(fibrad_trace_point_function, fibrad_trace_point);
-
-/* The same with lists. */
-typedef void fibrad_trace_wall_function(fibrad_tracer *tracer, const double point[3], const double w[3],
-                                        uint32_t except, fibrad_hit *hit);
-FIBRAD_DECLARE_VERSIONS(fibrad_trace_wall_function, fibrad_trace_wall);
 
 #endif

@@ -27,7 +27,7 @@ static int count_ray(const fibrad_scene *scene, uint32_t side, const double poin
                      view_counts *counts, uint32_t *seen) {
     double distance;
     fibrad_hit hit = {.sphere = FIBRAD_NONE};
-    FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, point, w, fibrad_side_triangle(side), &hit);
+    FIBRAD_VERSION_OF(fibrad_trace_point, scene->facts.isa)(scene, NULL, point, w, fibrad_side_triangle(side), &hit);
     counts->rays++;
     if (hit.sphere != FIBRAD_NONE) {
         counts->spheres++;

@@ -6,6 +6,7 @@
  * a linear system in v of both spheres. */
 #include "base/constants.h"
 #include "base/elementary.h"
+#include "base/linear.h"
 #include "rings/rings.h"
 
 #define RINGS   FIBRAD_RINGS
@@ -193,24 +194,11 @@ static void set_rows(const fibrad_rings *rings, const fibrad_ringed *sphere, uin
     }
 }
 
-/* Solves the first n rows by elimination. The diagonal outweighs the rest. Leaves the solution at the ends of rows. */
-static void eliminate(double row[][2 * RINGS + 1], uint32_t n) {
-    for (uint32_t k = 0; k < n; k++)
-        for (uint32_t m = k + 1; m < n; m++) {
-            const double part = row[m][k] / row[k][k];
-            for (uint32_t c = k + 1; c <= n && part != 0; c++) row[m][c] -= part * row[k][c];
-        }
-    for (uint32_t k = n; k-- > 0;) {
-        for (uint32_t m = k + 1; m < n; m++) row[k][n] -= row[k][m] * row[m][n];
-        row[k][n] /= row[k][k];
-    }
-}
-
 double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count,
                         fibrad_rings_work *work) {
     double spread[RINGS];
     for (uint32_t i = 0; i < count; i++) set_rows(rings, sphere, count, i, work);
-    eliminate(work->row, count * RINGS);
+    fibrad_solve_linear(count * RINGS, 2 * RINGS + 1, work->row[0]);
     double top = conducted_at(rings, &sphere[0], 0, spread) - sphere[0].emission;
     for (uint32_t m = 0; m < RINGS; m++) top += spread[m] * work->row[m][count * RINGS];
     return top;
@@ -234,7 +222,7 @@ double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivi
         for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * rings->spread[k][m] + (k == m);
         row[RINGS] = flux[k] = share_of_spot(rings, size, k) / rings->share[k];
     }
-    eliminate(work->row, RINGS);
+    fibrad_solve_linear(RINGS, 2 * RINGS + 1, work->row[0]);
     for (uint32_t k = 0; k < RINGS; k++) {
         response[k] = 0;
         for (uint32_t m = 0; m < RINGS; m++) {

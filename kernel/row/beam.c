@@ -1,7 +1,6 @@
 /* beam.c - checks a beam rule and hands it to the version for the scene's instruction set. SPDX-License-Identifier: MIT
  */
 #include "row/beam.h"
-#include "row/beam_lanes.h"
 #include "mask/line_set.h"
 
 /* The number of directions rises in steps of an eighth. Each step takes a sixth off the error. The steps aim a
@@ -33,8 +32,7 @@ int fibrad_beam_complete(const fibrad_beam_rule *given, fibrad_beam_rule *rule) 
 
 int fibrad_beam_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const fibrad_beam_rule *rule,
                         bool exact, fibrad_row *row) {
-    const fibrad_beam_range all = {.from = 0, .to = rule->directions, .exact = exact};
-    return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, rule, &all, row);
+    return FIBRAD_VERSION_OF(fibrad_beam_lanes, scene->facts.isa)(scene, space, i, rule, exact, row);
 }
 
 /* Repeats the row with more directions until its error is small enough. Only then its length is known. */

@@ -3,7 +3,7 @@
 #include FIBRAD_LANES_HEADER
 #include "base/constants.h"
 #include "sample/direction.h"
-#include "row/beam_lanes.h"
+#include "row/beam.h"
 #include "pair/free_pair.h"
 #include "workspace/segments_lanes.h"
 #include "row/mesh_share_lanes.h"
@@ -41,6 +41,12 @@ typedef struct beam_windows {
     double roughness;       /* sum of the squared differences */
     float *open;            /* [WINDOWS_RECENT], the part of each of the last windows that no sphere covers */
 } beam_windows;
+
+/* Sums over the windows of a row so far. */
+typedef struct beam_sums {
+    double open[2];  /* what meets nothing in even and in odd windows */
+    double whole[2]; /* sizes of even and of odd windows, in points of masks or as areas */
+} beam_sums;
 
 static void LANED(frame_of_beam)(const void *from, uint32_t k, uint32_t points, double frame[9]) {
     const beam_windows *windows = from;
@@ -148,11 +154,11 @@ static double compute_window(fibrad_workspace *work, beam_windows *windows, uint
 
 /* Compares what window k has open with the two nearby windows before it. If what is open changed evenly from one
  * direction to the next, the difference would be 0. open: a part of the window */
-static void compare_window(beam_windows *windows, uint32_t from, uint32_t k, double open) {
+static void compare_window(beam_windows *windows, uint32_t k, double open) {
     const uint32_t once = windows->nearby, twice = 2 * windows->nearby;
     float *of = windows->open;
     of[k % WINDOWS_RECENT] = (float)open;
-    if (k < from + twice) return;
+    if (k < twice) return;
     const double difference = open - 2 * of[(k - once) % WINDOWS_RECENT] + of[(k - twice) % WINDOWS_RECENT];
     windows->roughness += difference * difference, windows->compared++;
 }
@@ -164,14 +170,13 @@ static double open_error_of(const beam_windows *windows) {
     return fibrad_sqrt(windows->roughness / (6.0 * windows->compared * windows->count));
 }
 
-static void add_open(fibrad_workspace *work, uint32_t k, double rest, fibrad_beam_sums *sums) {
+static void add_open(fibrad_workspace *work, uint32_t k, double rest, beam_sums *sums) {
     sums->open[k % 2] += fibrad_on_grid(rest, work->entries.grid);
 }
 
-/* Computes window k and adds it to all sums. from: the first window of this call. False: there was no room for all
- * discs. */
-static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t from,
-                       uint32_t k, fibrad_beam_sums *sums) {
+/* Computes window k and adds it to all sums. False: there was no room for all discs. */
+static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, uint32_t k,
+                       beam_sums *sums) {
     static const double centre[3] = {0, 0, 0};
     fibrad_points *points = &windows->points;
     double frame[9], whole;
@@ -181,7 +186,7 @@ static bool add_window(fibrad_workspace *work, beam_windows *windows, const fibr
     if (work->disc.count > work->disc.capacity || work->areas.overflow) return false;
     sums->whole[k % 2] += fibrad_on_grid(whole, work->entries.grid);
     LANED(take_segments)(work, frame, k, rest > 0);
-    if (windows->chords == 0) compare_window(windows, from, k, work->bare / whole);
+    if (windows->chords == 0) compare_window(windows, k, work->bare / whole);
     const bool meets = work->met != NULL && work->met->any;
     if (meets) LANED(fibrad_mesh_count)(work, frame, k);
     if (work->scene->container.walls) LANED(fibrad_walls_share)
@@ -237,7 +242,7 @@ static bool near_walls(const fibrad_workspace *work) {
 
 /* Walls share what is open in the windows that spheres share, too. The windows of the other senses only change the
  * proportions. parts: as in fibrad_wall_factors. */
-static void keep_open(fibrad_workspace *work, fibrad_beam_sums *sums, double parts[2]) {
+static void keep_open(fibrad_workspace *work, beam_sums *sums, double parts[2]) {
     double all = 0;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++) all += work->wall[slot];
     const double scale = all > 0 ? (sums->open[0] + sums->open[1]) / all : 0;
@@ -265,8 +270,8 @@ static void begin_row(fibrad_workspace *work, const fibrad_scene *scene, uint32_
     fibrad_wall_sums_begin(&work->walls->sums, windows->count << windows->both);
 }
 
-/* What the windows of a row have in common. Directions do not pair off along the axis of walls. */
-static fibrad_window_set set_of_windows(const fibrad_scene *scene, const beam_windows *windows) {
+/* What the windows of a row have in common. */
+static fibrad_window_set set_of_windows(const beam_windows *windows) {
     const bool masked = windows->chords > 0;
     const double square = 32.0 * windows->words * windows->chords; /* points of masks in the square about a window */
     const double size = masked ? FIBRAD_PI / 4 * square : windows->size, most = masked ? square : windows->size;
@@ -277,28 +282,22 @@ static fibrad_window_set set_of_windows(const fibrad_scene *scene, const beam_wi
                                .whole = size,
                                .middle = {fibrad_grid_middle(directions), fibrad_grid_middle(most * directions),
                                           fibrad_grid_middle(most * most * directions)},
-                               .mixed = windows->lines != NULL ||
-                                        (!windows->turned && fibrad_walls_only(&scene->container) < 2),
                                .ends = windows->lines == NULL && !masked};
 }
 
-/* Adds up the windows of a range and the parts that were kept. Errors: _WORK, _BACK. */
-static int sum_windows(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set,
-                       const fibrad_beam_range *range, fibrad_beam_sums *sums) {
-    for (uint32_t p = 0; p < range->parts; p++) fibrad_beam_add_kept(work, &range->part[p], sums);
+/* Adds up all windows. Errors: _WORK, _BACK. */
+static int sum_windows(fibrad_workspace *work, beam_windows *windows, const fibrad_window_set *set, beam_sums *sums) {
     LANED(begin_segments)(&work->segments);
-    for (uint32_t k = range->from; k < range->to; k++)
-        if (!add_window(work, windows, set, range->from, k, sums)) return fibrad_work_discs_missed(work);
+    for (uint32_t k = 0; k < windows->count; k++)
+        if (!add_window(work, windows, set, k, sums)) return fibrad_work_discs_missed(work);
     if (windows->chords > 0) gather_counts(work);
-    sums->seen += work->masks.regions;
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     return work->back != UINT32_MAX ? FIBRAD_E_BACK : FIBRAD_OK;
 }
 
 /* Sets what the row has besides spheres. parts: out: as in fibrad_wall_factors. */
 static void give_rest(fibrad_workspace *work, const beam_windows *windows, const fibrad_window_set *set,
-                      fibrad_beam_sums *sums, const fibrad_free_pairs *pairs, double scale, double parts[2],
-                      fibrad_row *row) {
+                      beam_sums *sums, const fibrad_free_pairs *pairs, double scale, double parts[2], fibrad_row *row) {
     const fibrad_scene *scene = work->scene;
     if (scene->container.walls) LANED(fibrad_walls_complete)(work, set, parts);
     if (windows->both) keep_open(work, sums, parts);
@@ -328,27 +327,25 @@ static void set_error_of_directions(const fibrad_workspace *work, const double p
 }
 
 int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, uint32_t i,
-                             const fibrad_beam_rule *rule, const fibrad_beam_range *range, fibrad_row *row) {
+                             const fibrad_beam_rule *rule, bool exact, fibrad_row *row) {
     beam_windows windows;
     float open[WINDOWS_RECENT];
-    fibrad_beam_sums sums = {.open = {0, 0}, .whole = {0, 0}};
+    beam_sums sums = {{0, 0}, {0, 0}};
     double parts[2] = {0, 0};
     int status = choose_windows(scene, scene->place[i], rule, &windows);
     if (status != FIBRAD_OK) return status;
     windows.open = open;
     const bool masked = windows.chords > 0, lines = windows.lines != NULL;
     begin_row(work, scene, i, rule, &windows);
-    const fibrad_window_set set = set_of_windows(scene, &windows);
-    status = sum_windows(work, &windows, &set, range, &sums);
+    const fibrad_window_set set = set_of_windows(&windows);
+    status = sum_windows(work, &windows, &set, &sums);
     if (status != FIBRAD_OK) return status;
     row->fallbacks = work->areas.fallbacks;
     row->length = 0;
-    if (range->kept != NULL) return fibrad_beam_keep(work, &sums, range->kept);
-
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * windows.size);
     for (int half = 0; half < 2 && lines; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
     fibrad_free_pairs pairs = {.open = 1};
-    if (range->exact) pairs = fibrad_free_pairs_find(work, scale);
+    if (exact) pairs = fibrad_free_pairs_find(work, scale);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     status = fibrad_free_pairs_segments(work, &pairs);
     if (status == FIBRAD_OK) status = fibrad_entries_row(&work->entries, scene, scale, row);
@@ -359,7 +356,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     row->directions = lines ? 0 : windows.count;
     row->lines = lines ? windows.count : 0;
     row->symmetric = 0;
-    row->noise = masked ? noise_of(&windows, all, sums.seen) : 0;
+    row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
     const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *
                           fibrad_sqrt(fibrad_max(parts[0], SHARES_FOURTHS * parts[1])) * scale;
     row->shares = fibrad_sqrt(shares * shares + pairs.unseen * pairs.unseen);

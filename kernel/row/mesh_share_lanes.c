@@ -370,9 +370,7 @@ void LANED(fibrad_mesh_count)(fibrad_workspace *work, const double frame[9], uin
         if (side == FIBRAD_NO_SIDE) continue;
         const uint32_t slot = slot_met(work, frame, p);
         if (slot == FIBRAD_NONE) {
-            if (work->back == UINT32_MAX)
-                work->back = fibrad_side_number(&scene->mesh,
-                                                side); /* a part of a row has the same triangle at fault as the row */
+            if (work->back == UINT32_MAX) work->back = fibrad_side_number(&scene->mesh, side);
             continue;
         }
         weight[slot] += met->weight[p];

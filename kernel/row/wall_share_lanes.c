@@ -11,10 +11,12 @@
 #include "base/constants.h"
 #include "row/wall_share_lanes.h"
 #include "row/wall_window.h"
+#include "ray/tracer.h"
 #include "sample/direction.h"
 #include "window/points_lanes.h"
 
 #define WALL_POINTS   128u
+#define HORIZON_LINES 6   /* lines that are followed across the horizon, about */
 #define HIDDEN_POINTS 64u /* of windows without an open part */
 
 /* Rotates the axes u and v of a frame. Coordinates in the frame rotate the other way. */
@@ -321,6 +323,56 @@ static void share_by_lines(fibrad_workspace *work, const fibrad_points *points, 
     }
 }
 
+bool LANED(fibrad_beam_turned)(const fibrad_workspace *work, const double frame[9], const double p[2],
+                               const double way[3]) {
+    const double *u = frame, *v = frame + 3, *w = frame + 6;
+    const double up = fibrad_sqrt(fibrad_max(0, 1 - (p[0] * p[0] + p[1] * p[1])));
+    double n[3], along = 0, cosine = 1;
+    fibrad_hit hit;
+    for (int k = 0; k < 3; k++) {
+        n[k] = p[0] * u[k] + p[1] * v[k];
+        along += n[k] * way[k], cosine += w[k] * way[k];
+    }
+    for (int k = 0; k < 3; k++) n[k] += up * way[k] - along / cosine * (w[k] + way[k]);
+    LANED(fibrad_trace)(work->scene, NULL, work->place, n, way, &hit);
+    return hit.sphere == FIBRAD_NONE && hit.side == FIBRAD_NO_SIDE;
+}
+
+/* The part of the lines of a band across the horizon that meet nothing. What is open may end there: a sphere on top of
+ * a wide bed sees the sky above the horizon and other spheres below it. So some lines are followed, from open points.
+ * The more of the band lies there, the more lines. */
+static double part_through(fibrad_workspace *work, const double frame[9], const fibrad_points *points,
+                           const fibrad_wall_window *window) {
+    const int axis = work->walls->view.only;
+    const double level = frame[6 + axis], x = fibrad_abs(level) / window->band;
+    const uint32_t lines = 1 + (uint32_t)(HORIZON_LINES * (1 - x) * (1 - x));
+    double free = 0, all = 0;
+    if (points->count == 0) open_points(work, 1, 0, &work->walls->points), points = &work->walls->points;
+    for (uint32_t p = 0, seen = 0, line = 0; p < points->count && line < lines; p++) {
+        if ((points->seen[p / 64] >> p % 64 & 1) == 0 || ++seen * lines < (line + 1) * points->open) continue;
+        const double at[2] = {points->set.x[p], points->set.y[p]};
+        const double away = (1 - x) * (line++ + 0.5) / lines, t = x + away, weight = (1 - t * t) * (1 - t * t);
+        const double to = level > 0 ? -away * window->band : away * window->band;
+        const double flat = fibrad_sqrt((1 - to * to) / (1 - level * level));
+        double way[3];
+        for (int k = 0; k < 3; k++) way[k] = k == axis ? to : flat * frame[6 + k];
+        if (LANED(fibrad_beam_turned)(work, frame, at, way)) free += weight;
+        all += weight;
+    }
+    return all > 0 ? free / all : 0;
+}
+
+/* Adds a window of which the fields from `k` to `slope` are set, but for the grids. */
+static void share_window(fibrad_workspace *work, const double frame[9], const fibrad_points *points,
+                         const fibrad_window_set *set, fibrad_wall_window *window) {
+    fibrad_wall_room *walls = work->walls;
+    for (int n = 0; n < 3; n++) window->grid[n] = fibrad_grid_of(set->middle[n], window->k);
+    fibrad_wall_window_begin(window, &walls->view, frame);
+    window->band = fibrad_wall_window_band(window, &walls->view, work->turned);
+    if (window->band > 0 && window->open > 0) window->through = part_through(work, frame, points, window);
+    if (!fibrad_wall_window_simple(window, &walls->view, &walls->sums)) share_by_lines(work, points, window);
+}
+
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                const fibrad_window_set *set, double rest, double whole) {
     if (rest == 0) {
@@ -328,7 +380,6 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         return;
     }
     fibrad_wall_window window = {.k = k, .n = set->directions, .open = rest, .part = 1};
-    for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
     window.weight = whole / set->whole;
     window.end = work->entries.end;
     window.parallel = work->parallel;
@@ -338,9 +389,7 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
     if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
-    fibrad_wall_window_begin(&window, &work->walls->view, frame);
-    if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))
-        share_by_lines(work, points, &window);
+    share_window(work, frame, points, set, &window);
 }
 
 /* Adds to `all` of the regions what hidden windows would see. */
@@ -352,11 +401,8 @@ static void add_hidden(fibrad_workspace *work, const fibrad_window_set *set) {
         double frame[9];
         set->frame(set->from, k, HIDDEN_POINTS, frame);
         fibrad_wall_window window = {.k = k, .n = set->directions, .hidden = 1, .weight = 1, .part = 1};
-        for (int n = 0; n < 3; n++) window.grid[n] = fibrad_grid_of(set->middle[n], k);
         window.end = set->ends && (k == 0 || k == set->directions - 1);
-        fibrad_wall_window_begin(&window, &work->walls->view, frame);
-        if (!fibrad_wall_window_simple(&window, &work->walls->view, set->mixed, &work->walls->sums))
-            share_by_lines(work, all, &window);
+        share_window(work, frame, all, set, &window);
     }
 }
 

@@ -13,7 +13,6 @@ typedef struct fibrad_window_set {
     uint32_t directions;                                                           /* how many windows there are */
     double whole;     /* the size of a window, or about that of masks */
     double middle[3]; /* of the grids for shares of windows, sizes and squared sizes, see sums/grid.h */
-    bool mixed;       /* directions do not pair off along the only axis of walls */
     bool ends;        /* the first and the last window count half in differences of even and odd windows */
 } fibrad_window_set;
 
@@ -23,6 +22,11 @@ typedef struct fibrad_window_set {
  * open. */
 void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], const fibrad_points *points, uint32_t k,
                                const fibrad_window_set *set, double rest, double whole);
+
+/* Whether a beam of a window meets nothing if the window turns from its direction to `way` [unit vector]. frame: of the
+ * window. p: the point of the beam in the frame, x and y. */
+bool LANED(fibrad_beam_turned)(const fibrad_workspace *work, const double frame[9], const double p[2],
+                               const double way[3]);
 
 /* Adds the view factors of walls to work->wall[] when all windows are done. parts: as in fibrad_wall_factors. */
 void LANED(fibrad_walls_complete)(fibrad_workspace *work, const fibrad_window_set *set, double parts[2]);

@@ -121,21 +121,19 @@ static double rising_share(double slope, double width) {
     return fibrad_max(0, fibrad_min(1, share));
 }
 
-/* All walls are planes across one axis: a band of directions tells the shares. No band is needed if as many directions
- * rise along the axis as fall, except one that is level. */
-static void add_band(const fibrad_wall_window *window, int axis, bool mixed, fibrad_wall_sums *sums) {
-    const double *frame = window->frame, level = frame[6 + axis];
-    const double band = window->parallel || !mixed ? 0 : WALL_BAND / fibrad_sqrt(window->n);
-    const double up = rising_share(level, band);
-    double more = 0;
-    if (fibrad_abs(level) < band) { /* the mean of the rising part lies above the direction */
-        const double x = level / band, part = 1 - x * x, rise = 5.0 / 32 * band * part * part * part;
-        more = rise * (window->slope[0] * frame[axis] + window->slope[1] * frame[3 + axis]);
-        more = fibrad_max(-window->open * up, fibrad_min(window->open * (1 - up), more));
-    }
+double fibrad_wall_window_band(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned) {
+    const double band = turned || view->only == 3 ? 0 : WALL_BAND / fibrad_sqrt(window->n);
+    return fibrad_abs(window->frame[6 + view->only % 3]) < band ? band : 0;
+}
+
+/* All walls are planes across one axis: a band of directions tells the shares. Of what the band has across the horizon
+ * only the part that meets nothing counts there. */
+static void add_band(const fibrad_wall_window *window, int axis, fibrad_wall_sums *sums) {
+    const double level = window->frame[6 + axis], side = level > 0 ? 1 : level < 0 ? 0 : 0.5;
+    const double up = rising_share(level, window->band), part = side + window->through * (up - side);
     const uint32_t low = (uint32_t)axis, high = low + (4u << axis);
-    fibrad_wall_window_add(window, high, window->open * up + more, up, sums);
-    fibrad_wall_window_add(window, low, window->open * (1 - up) - more, 1 - up, sums);
+    fibrad_wall_window_add(window, high, window->open * part, up, sums);
+    fibrad_wall_window_add(window, low, window->open * (1 - part), 1 - up, sums);
 }
 
 /* Whether all lines of the window meet the first wall of an edge (1) or the second (-1). 0: neither, or it is not
@@ -172,10 +170,9 @@ static uint32_t sole_wall(const fibrad_wall_window *window, const fibrad_wall_vi
     return a;
 }
 
-bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool mixed,
-                               fibrad_wall_sums *sums) {
+bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, fibrad_wall_sums *sums) {
     if (view->only < 3) {
-        add_band(window, view->only, mixed, sums);
+        add_band(window, view->only, sums);
         return true;
     }
     const uint32_t sole = view->cut ? 4 : sole_wall(window, view);

@@ -28,6 +28,8 @@ typedef struct fibrad_wall_window {
     bool parallel;             /* whether all lines have the direction of the window */
     bool end;                  /* whether it counts half in differences of even and odd windows */
     double slope[2];           /* growth of the open part as the direction turns towards each axis, per radian */
+    double band;               /* as fibrad_wall_window_band says */
+    double through;            /* part of the lines of this band across the horizon that meet nothing */
     double wide;               /* radius of the disc of directions */
     fibrad_wall_course course; /* of the direction, unless all walls are across one axis */
     double spread;             /* radius of the part of this disc that is needed for walls as near as these */
@@ -40,10 +42,13 @@ typedef struct fibrad_wall_window {
  * the axes x, y and z; they must stay. */
 void fibrad_wall_window_begin(fibrad_wall_window *window, const fibrad_wall_view *view, const double frame[9]);
 
+/* Half width of the band of directions for which the window stands if all walls are planes across one axis. 0: it does
+ * not reach the horizon, or the row has directions that are turned at random. */
+double fibrad_wall_window_band(const fibrad_wall_window *window, const fibrad_wall_view *view, bool turned);
+
 /* Adds to the regions a window that one wall gets as a whole, or whose shares follow from one number. False: lines
- * must tell the shares. mixed: as in fibrad_window_set. */
-bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, bool mixed,
-                               fibrad_wall_sums *sums);
+ * must tell the shares. */
+bool fibrad_wall_window_simple(const fibrad_wall_window *window, const fibrad_wall_view *view, fibrad_wall_sums *sums);
 
 /* Sets `sharpness`, which lines need. */
 void fibrad_wall_window_sharpen(fibrad_wall_window *window, const fibrad_wall_view *view);

@@ -199,9 +199,9 @@ static uint32_t level_of(double r, double radius_min) {
     return level;
 }
 
-/* The cube root of v by Newton's iteration, which begins at `above`. Accurate enough for a length scale. */
-static double cube_root(double v, double above) {
-    double root = above;
+/* The cube root of v by Newton's iteration, which begins at 1. Accurate enough for a length scale. */
+static double cube_root(double v) {
+    double root = 1;
     for (int i = 0; i < 200 && root * root * root > 1.01 * v; i++) root -= (root - v / (root * root)) / 3;
     return root;
 }
@@ -221,7 +221,7 @@ static uint32_t choose_cells(const fibrad_scene *scene, fibrad_level *level, uin
         longest = fibrad_max(longest, extent[axis]);
     }
     for (int axis = 0; axis < 3; axis++) volume *= extent[axis] / longest;
-    double cell = longest * cube_root(fibrad_min(1, volume * (SPHERES_PER_CELL / count)), 1), total;
+    double cell = longest * cube_root(fibrad_min(1, volume * (SPHERES_PER_CELL / count))), total;
     do {
         total = 1;
         for (int axis = 0; axis < 3; axis++) {
@@ -373,7 +373,7 @@ static double spacing_of(const fibrad_scene *scene) {
     double longest = 2 * scene->facts.radius_max, volume = 1;
     for (int axis = 0; axis < 3; axis++) longest = fibrad_max(longest, side(scene, axis));
     for (int axis = 0; axis < 3; axis++) volume *= fibrad_max(side(scene, axis), 2 * scene->facts.radius_max) / longest;
-    return longest * cube_root(volume / scene->facts.spheres, 1);
+    return longest * cube_root(volume / scene->facts.spheres);
 }
 
 /* Checks that a mesh is not too small in comparison with its place, the spheres and the walls, and that not too many

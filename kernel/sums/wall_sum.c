@@ -6,9 +6,7 @@
 #define HARDLY 1e-4 /* of a window: weight of the prior where hardly any line has met a region */
 
 void fibrad_wall_sums_begin(fibrad_wall_sums *sums, uint32_t windows) {
-    const size_t used = offsetof(fibrad_wall_sums, hidden) + (windows / 64 + 1) * sizeof *sums->hidden;
-    fibrad_zero(sums, used);
-    sums->used = used;
+    fibrad_zero(sums, offsetof(fibrad_wall_sums, hidden) + (windows / 64 + 1) * sizeof *sums->hidden);
 }
 
 int fibrad_walls_only(const fibrad_container *c) {

@@ -37,7 +37,6 @@ typedef struct fibrad_wall_sums {
     double open[FIBRAD_REGIONS][4]; /* the open part, an area or points, in four parts as in fibrad_entries */
     double all[FIBRAD_REGIONS][4];  /* the same if nothing were hidden, in windows */
     double mixed[FIBRAD_REGIONS];   /* the open part times the hidden part */
-    size_t used;                    /* bytes of the structure, up to the last word of `hidden` that is in use */
     uint64_t hidden[2 * FIBRAD_DIRECTIONS_MAX / 64 + 1]; /* bit k: window k is hidden and does not count in `all` */
 } fibrad_wall_sums;
 

@@ -10,10 +10,14 @@ typedef struct fibrad_arc_lanes {
     vd px, py, qx, qy, cx, cy, r, circle;
 } fibrad_arc_lanes;
 
-/* atan(t),
- * t
- * <= tan(pi/8), by a polynomial through Chebyshev nodes. The relative error is 7e-17. Even and odd powers of t^2
- * have a sum each. */
+/* Three arcs of the unit circle. Their ends lie on no symmetry of a bed. */
+static const double fibrad_areas_corner[4][2] = {{0x1.e921dd42f09bap-1, 0x1.2e9cd95baba34p-2},
+                                                 {-0x1.7799ed83d9d3ap-1, 0x1.5bf2a3a493975p-1},
+                                                 {-0x1.c61fbefc5b202p-3, -0x1.f34110526968fp-1},
+                                                 {0x1.e921dd42f09bap-1, 0x1.2e9cd95baba34p-2}};
+
+/* atan(t) for t from 0 to tan(pi/8), by a polynomial through Chebyshev nodes. The relative error is 7e-17. Even and odd
+ * powers of t^2 have a sum each. */
 static inline vd fibrad_atan_lanes(vd t) {
     static const double ATAN[] = {0x1.0000000000000p+0,  -0x1.55555555551d9p-2, 0x1.9999999933cacp-3,
                                   -0x1.249249003cd48p-3, 0x1.c71c646ead620p-4,  -0x1.745ba79b91c34p-4,
@@ -30,9 +34,7 @@ static inline vd fibrad_atan_lanes(vd t) {
 }
 
 /* Green's theorem: half the integral of x dy - y dx along an arc of angle v is (r^2 v + c x (q - p))/2. The angle v
- * is the nearest multiple of a right angle plus 2 atan(t),
- * t
- * <= tan(pi/8). */
+ * is the nearest multiple of a right angle plus 2 atan(t), t being at most tan(pi/8). */
 static inline vd fibrad_arc_area(const fibrad_arc_lanes *a) {
     vd zero = vd_set1(0), eighth = vd_set1(0x1.921fb54442d18p-1), quarter = vd_set1(0x1.921fb54442d18p+0);
     vd dx = a->qx - a->px, dy = a->qy - a->py, square = a->r * a->r;

@@ -297,26 +297,11 @@ static bool resolve_again(fibrad_areas *areas, uint32_t circles) {
 }
 
 void LANED(fibrad_areas_begin)(fibrad_areas *areas) {
-    /* three arcs whose ends lie on no symmetry of a bed */
-    static _Alignas(FIBRAD_ALIGNMENT)
-        const double start_x[8] = {0x1.e921dd42f09bap-1, -0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3};
-    static _Alignas(FIBRAD_ALIGNMENT)
-        const double start_y[8] = {0x1.2e9cd95baba34p-2, 0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1};
-    static _Alignas(FIBRAD_ALIGNMENT)
-        const double end_x[8] = {-0x1.7799ed83d9d3ap-1, -0x1.c61fbefc5b202p-3, 0x1.e921dd42f09bap-1};
-    static _Alignas(FIBRAD_ALIGNMENT)
-        const double end_y[8] = {0x1.5bf2a3a493975p-1, -0x1.f34110526968fp-1, 0x1.2e9cd95baba34p-2};
+    const double(*corner)[2] = fibrad_areas_corner;
     fibrad_boundary *b = areas->boundary;
-    vd zero = vd_set1(0);
-    for (uint32_t o = 0; o < 3; o += VD_LANES) {
-        vd_store(b->px + o, vd_load(start_x + o));
-        vd_store(b->py + o, vd_load(start_y + o));
-        vd_store(b->qx + o, vd_load(end_x + o));
-        vd_store(b->qy + o, vd_load(end_y + o));
-        vd_store(b->cx + o, zero);
-        vd_store(b->cy + o, zero);
-        vd_store(b->r + o, vd_set1(1));
-        vd_store(b->circle + o, zero);
+    for (uint32_t n = 0; n < 3; n++) {
+        b->px[n] = corner[n][0], b->py[n] = corner[n][1], b->qx[n] = corner[n + 1][0], b->qy[n] = corner[n + 1][1];
+        b->cx[n] = b->cy[n] = b->circle[n] = 0, b->r[n] = 1;
     }
     b->alive = b->window = 7;
     areas->widest = 1;

@@ -112,12 +112,9 @@ static bool add_joint(fibrad_areas *areas, const dense_circle *c, const fibrad_d
     return true;
 }
 
-/* Adds a whole circle. Its parts begin in directions that lie on no symmetry of a bed. */
+/* Adds a whole circle. */
 static void add_whole(fibrad_areas *areas, const dense_circle *c) {
-    static const double corner[4][2] = {{0x1.e921dd42f09bap-1, 0x1.2e9cd95baba34p-2},
-                                        {-0x1.7799ed83d9d3ap-1, 0x1.5bf2a3a493975p-1},
-                                        {-0x1.c61fbefc5b202p-3, -0x1.f34110526968fp-1},
-                                        {0x1.e921dd42f09bap-1, 0x1.2e9cd95baba34p-2}};
+    const double(*corner)[2] = fibrad_areas_corner;
     for (int n = 0; n < 3; n++)
         add_parts(areas, c, c->r * corner[n][0], c->r * corner[n][1], c->r * corner[n + 1][0], c->r * corner[n + 1][1]);
 }

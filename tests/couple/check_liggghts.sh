@@ -330,8 +330,8 @@ refuse 2 3 "step 0: .*wall" -in bed $radiation --strict --wall zmax:temperature=
 # shellcheck disable=SC2086
 # shellcheck disable=SC2086  # options
 refuse 2 3 "step 0: .*zmax open" -in bed $sides --steps 1
-refuse 1 2 "wall: zhi=open,.06 is now zhi:open:at=.06" -in bed --wall=zhi=open,.06
-refuse 1 2 "zlo=300,1 is now zlo:temperature=T:emissivity=E" -in bed --wall zlo=300,1
+refuse 1 2 "wall: zhi=open,.06 is not how a wall is written" -in bed --wall=zhi=open,.06
+refuse 1 2 "zlo=300,1 is not how a wall is written" -in bed --wall zlo=300,1
 # shellcheck disable=SC2086
 refuse 1 3 "wall zmax: it needs a temperature" -in bed $radiation --wall zmax --steps 1
 refuse 1 2 "xcylinder: needs Y,Z,R" -in bed --wall xcylinder:1,2

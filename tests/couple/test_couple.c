@@ -38,6 +38,19 @@ static void *memory_of(size_t count, size_t size) {
     return block;
 }
 
+/* Variables that free what they have at the end of their block. */
+#define FREED        __attribute__((cleanup(free_block)))
+#define OWNED_INSITU __attribute__((cleanup(free_insitu))) fibrad_insitu
+#define OWNED_PILE   __attribute__((cleanup(close_pile))) struct pile
+
+static void free_block(void *pointer) {
+    void *block;
+    memcpy(&block, pointer, sizeof block);
+    free(block);
+}
+
+static void free_insitu(fibrad_insitu **s) { fibrad_insitu_free(*s); }
+
 /* ---- messages -------------------------------------------------------------------------------------------------- */
 
 enum { PATTERNS = 300, BEFORE = 3 };
@@ -64,7 +77,8 @@ static void things_arrive(void) {
         for (int q = 0; q < ranks; ++q) count[q] = things_of(rank, q, pattern), start[q] = 3 * sum, sum += count[q];
         MPI_Alltoall(count, 1, MPI_INT, same, 1, MPI_INT, MPI_COMM_WORLD);
         for (int q = 0; q < ranks; ++q) begin[q] = 3 * all, all += same[q];
-        struct thing *thing = memory_of((size_t)sum, sizeof *thing), *known = memory_of((size_t)all, sizeof *known);
+        FREED struct thing *thing = memory_of((size_t)sum, sizeof *thing),
+                           *known = memory_of((size_t)all, sizeof *known);
         for (int k = 0; k < sum; ++k) thing[k] = (struct thing){rank, pattern, k};
         CHECK(fibrad_block_fit(&to, BEFORE, sizeof *thing) == FIBRAD_OK);
         memset(to.at, pattern, BEFORE * sizeof *thing);
@@ -80,8 +94,6 @@ static void things_arrive(void) {
         CHECK(kept);
         if (!status) CHECK(memcmp(got, same, (size_t)ranks * sizeof *got) == 0);
         if (!status) CHECK(memcmp(byte + BEFORE * sizeof *thing, known, (size_t)all * sizeof *known) == 0);
-        free(thing);
-        free(known);
     }
     fibrad_block_free(&to);
     free(count);
@@ -108,7 +120,7 @@ static double added_by(int user, int k, int c) { return user * 1000 + k + 7 * c;
 static void links(void) {
     const int own = owned_by(rank);
     uint64_t *id = memory_of(OWNED + USED, sizeof *id), culprit = 0;
-    double(*value)[WIDTH] = memory_of(OWNED + USED, sizeof *value);
+    FREED double(*value)[WIDTH] = memory_of(OWNED + USED, sizeof *value);
     fibrad_link *link;
     for (int k = 0; k < own; ++k) id[k] = owned_id(rank, k);
     for (int k = 0; k < USED; ++k) id[own + k] = used_id(rank, k);
@@ -148,7 +160,6 @@ static void links(void) {
     fibrad_link_forward(link, NULL, 1);
     fibrad_link_free(link);
     free(id);
-    free(value);
 }
 
 /* ---- beds ------------------------------------------------------------------------------------------------------ */
@@ -426,19 +437,17 @@ static void make_rows(fibrad_insitu *s, const struct pile *p, uint64_t step) {
 /* The rows of all ranks, whichever rank owns which particles, are those of one rank that owns all. A tube or a pipe
  * lies along an axis. */
 static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
-    struct pile all = pile_of(kind);
+    OWNED_PILE all = pile_of(kind);
     lay_along(&all, axis);
     if (rank == 0) {
-        fibrad_insitu *self = insitu_of(MPI_COMM_SELF, kind, 1);
+        OWNED_INSITU *self = insitu_of(MPI_COMM_SELF, kind, 1);
         make_rows(self, &all, 7);
         CHECK(fibrad_insitu_write(self, path_of("whole")) == FIBRAD_OK);
-        fibrad_insitu_free(self);
     }
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, kind, kind->threads);
     for (int again = 0; again < 2; ++again) { /* first other rows, so that the memory is not empty */
-        struct pile part = part_of(&all, again ? kind->spread : (kind->spread + 1) % SPREADS);
+        OWNED_PILE part = part_of(&all, again ? kind->spread : (kind->spread + 1) % SPREADS);
         make_rows(s, &part, again ? 7 : 6);
-        close_pile(&part);
     }
     CHECK(fibrad_insitu_write(s, path_of("part")) == FIBRAD_OK);
     MPI_Barrier(MPI_COMM_WORLD);
@@ -448,8 +457,6 @@ static void rows_are_those_of_one_rank(const struct kind *kind, int axis) {
     CHECK(facts.particles == all.bed.n && facts.step == 7 && facts.entries > 0 && facts.bytes > 0);
     CHECK(facts.error > 0 && facts.error < .1 && facts.beyond >= 0 && facts.beyond < .3);
     CHECK((facts.cutoff > 0) == (kind->cutoff > 0 ? kind->cutoff < 1000 : gather > 0));
-    fibrad_insitu_free(s);
-    close_pile(&all);
 }
 
 /* ---- powers ---------------------------------------------------------------------------------------------------- */
@@ -466,8 +473,8 @@ static fibrad_insitu_state state_of(const struct pile *p) {
 
 /* Powers add up to zero. Between equal temperatures nothing flows, to the bit. */
 static void powers_keep_energy(const struct kind *kind) {
-    struct pile all = pile_of(kind), part = part_of(&all, kind->spread);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+    OWNED_PILE all = pile_of(kind), part = part_of(&all, kind->spread);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, kind, 1);
     fibrad_insitu_totals totals;
     make_rows(s, &part, 0);
     fibrad_insitu_state state = state_of(&part);
@@ -492,17 +499,14 @@ static void powers_keep_energy(const struct kind *kind) {
     bool zero = totals.particles == 0 && totals.surroundings == 0 && totals.wall[0] == 0 && totals.wall[1] == 0;
     for (size_t i = 0; i < part.bed.n; ++i) zero = zero && part.power[i] == 0;
     CHECK(zero);
-    fibrad_insitu_free(s);
-    close_pile(&all);
-    close_pile(&part);
 }
 
 /* Rows that are made again, when particles have changed ranks, give the powers of a new object, to the bit. */
 static void powers_of_rows_made_again(const struct kind *kind) {
-    struct pile all = pile_of(kind), before = part_of(&all, (kind->spread + 1) % SPREADS);
-    struct pile part = part_of(&all, kind->spread);
-    double *power = memory_of(all.bed.n, sizeof *power);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1), *fresh = insitu_of(MPI_COMM_WORLD, kind, 1);
+    OWNED_PILE all = pile_of(kind), before = part_of(&all, (kind->spread + 1) % SPREADS);
+    OWNED_PILE part = part_of(&all, kind->spread);
+    FREED double *power = memory_of(all.bed.n, sizeof *power);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, kind, 1), *fresh = insitu_of(MPI_COMM_WORLD, kind, 1);
     fibrad_insitu_totals totals[2];
     make_rows(s, &before, 0);
     make_rows(s, &part, 1);
@@ -512,12 +516,6 @@ static void powers_of_rows_made_again(const struct kind *kind) {
     CHECK(fibrad_insitu_powers(fresh, &state, power, &totals[1]) == FIBRAD_OK);
     CHECK(memcmp(part.power, power, part.bed.n * sizeof *power) == 0 &&
           memcmp(&totals[0], &totals[1], sizeof *totals) == 0);
-    fibrad_insitu_free(s);
-    fibrad_insitu_free(fresh);
-    free(power);
-    close_pile(&all);
-    close_pile(&before);
-    close_pile(&part);
 }
 
 /* A lone particle loses A e (E - E of the surroundings), however little it conducts. */
@@ -529,13 +527,12 @@ static void a_lone_particle(void) {
         const fibrad_insitu_bed bed = {
             .n = rank == 0, .id = &id, .x = x, .radius = &r, .emissivity = &e, .conductivity = &relative[k]};
         const fibrad_insitu_state state = {.surroundings = 400, .n = bed.n, .id = &id, .temperature = &t};
-        fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &(struct kind){0}, 1);
+        OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, &(struct kind){0}, 1);
         fibrad_insitu_totals totals;
         double power;
         CHECK(fibrad_insitu_rows(s, &bed, 0) == FIBRAD_OK);
         CHECK(fibrad_insitu_powers(s, &state, &power, &totals) == FIBRAD_OK);
         CHECK(fabs(totals.particles / (loss * (pow(400, 4) - pow(t, 4))) - 1) < 1e-9);
-        fibrad_insitu_free(s);
     }
 }
 
@@ -552,14 +549,13 @@ static fibrad_insitu_totals powers_beside_a_speck(const fibrad_insitu_bed *walls
     const fibrad_insitu_state state = {
         .sigma = 1, .surroundings = 0, .wall_temperature = temperature, .n = bed.n, .id = &id, .temperature = &t};
     const fibrad_insitu_config config = {.paths = SPECK_PATHS};
-    fibrad_insitu *s;
+    OWNED_INSITU *s;
     fibrad_insitu_totals totals;
     double power;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &config) == FIBRAD_OK);
     CHECK(fibrad_insitu_rows(s, &bed, 0) == FIBRAD_OK);
     CHECK(fibrad_insitu_powers(s, &state, &power, &totals) == FIBRAD_OK);
     fibrad_insitu_facts_get(s, facts);
-    fibrad_insitu_free(s);
     return totals;
 }
 
@@ -596,11 +592,11 @@ static void walls_exchange_with_each_other(void) {
 /* Rows of another step have other noise. Rows of the same step are the same. */
 static void steps_change_noise(void) {
     const struct kind *kind = &kinds[1];
-    struct pile all = pile_of(kind), part = part_of(&all, 0);
+    OWNED_PILE all = pile_of(kind), part = part_of(&all, 0);
     const size_t n = part.bed.n;
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, kind, 1);
     const fibrad_insitu_state state = state_of(&part);
-    double *power = memory_of(3 * n, sizeof *power);
+    FREED double *power = memory_of(3 * n, sizeof *power);
     for (uint64_t k = 0; k < 3; ++k) {
         make_rows(s, &part, 4 + k % 2);
         CHECK(fibrad_insitu_powers(s, &state, power + k * n, NULL) == FIBRAD_OK);
@@ -609,16 +605,12 @@ static void steps_change_noise(void) {
     size_t same = 0;
     for (size_t i = 0; i < n; ++i) same += power[i] == power[n + i];
     CHECK(same < n / 10 + 1);
-    fibrad_insitu_free(s);
-    free(power);
-    close_pile(&all);
-    close_pile(&part);
 }
 
 /* All points of all particles lie in marked cells, and not all cells are marked. */
 static void the_map_has_all(const struct kind *kind) {
-    struct pile all = pile_of(kind), part = part_of(&all, kind->spread);
-    fibrad_particle *own = memory_of(part.bed.n, sizeof *own);
+    OWNED_PILE all = pile_of(kind), part = part_of(&all, kind->spread);
+    FREED fibrad_particle *own = memory_of(part.bed.n, sizeof *own);
     fibrad_occupancy map = {.mark = NULL};
     fibrad_block mark = {0};
     for (size_t i = 0; i < part.bed.n; ++i) {
@@ -650,9 +642,6 @@ static void the_map_has_all(const struct kind *kind) {
     CHECK(there);
     CHECK(100 * marked < 97 * cells);
     fibrad_block_free(&mark);
-    free(own);
-    close_pile(&all);
-    close_pile(&part);
 }
 
 /* A particle far above the bed hides only a little of the sky of the others. So does a particle so far away that its
@@ -663,19 +652,16 @@ static void the_sky_stays_open(void) {
     const double away[2][3] = {{0, 0, 100}, {1e5, 1e5, 1e5}};
     for (int k = 0; k < 2; ++k) {
         const struct kind *kind = &kinds_of_sky[k];
-        fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 1);
+        OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, kind, 1);
         fibrad_insitu_facts facts[2];
         for (int high = 0; high < 2; ++high) {
-            struct pile all = pile_of(kind);
+            OWNED_PILE all = pile_of(kind);
             for (int axis = 0; high && axis < 3; ++axis) all.x[3 * (all.bed.n - 1) + (size_t)axis] += away[k][axis];
-            struct pile part = part_of(&all, 0);
+            OWNED_PILE part = part_of(&all, 0);
             make_rows(s, &part, 0);
             fibrad_insitu_facts_get(s, &facts[high]);
-            close_pile(&all);
-            close_pile(&part);
         }
         CHECK(facts[0].beyond > 0 && facts[1].beyond < 1.1 * facts[0].beyond);
-        fibrad_insitu_free(s);
     }
 }
 
@@ -685,8 +671,8 @@ static void unknown_parts_are_told(enum walls walls) {
     const struct kind kind = {"unknown", 5, {walls == FLOORS, walls == FLOORS, 0}, walls, {.8, .8}, 4, 1, 0};
     struct kind whole = kind;
     whole.cutoff = 0;
-    struct pile all = pile_of(&kind), part = part_of(&all, 0);
-    fibrad_insitu *near = insitu_of(MPI_COMM_WORLD, &kind, 1), *far = insitu_of(MPI_COMM_WORLD, &whole, 1);
+    OWNED_PILE all = pile_of(&kind), part = part_of(&all, 0);
+    OWNED_INSITU *near = insitu_of(MPI_COMM_WORLD, &kind, 1), *far = insitu_of(MPI_COMM_WORLD, &whole, 1);
     const double even[2] = {500, 500};
     double *power = memory_of(part.bed.n, sizeof *power), sum[3] = {0}, most = 0, said[2] = {0};
     fibrad_insitu_state state = state_of(&part);
@@ -718,23 +704,19 @@ static void unknown_parts_are_told(enum walls walls) {
     CHECK(fibrad_insitu_powers(near, &state, part.power, NULL) == FIBRAD_OK);
     fibrad_insitu_facts_get(near, &facts);
     CHECK(facts.beyond > 1e-3 && !*fibrad_insitu_remark(near, FIBRAD_REMARK_BEYOND));
-    fibrad_insitu_free(near);
-    fibrad_insitu_free(far);
     free(power);
-    close_pile(&all);
-    close_pile(&part);
 }
 
 /* A particle larger than all others together sees them, and they see it. A cutoff less than its diameter is refused. */
 static void large_particles_are_seen(void) {
     const struct kind kind = {"large", 4, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0};
-    struct pile all = pile_of(&kind);
+    OWNED_PILE all = pile_of(&kind);
     const size_t last = all.bed.n - 1;
     const double large = 15;
     all.radius[last] = large;
     all.x[3 * last + 2] += 1.5 * large;
-    struct pile part = part_of(&all, 0);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    OWNED_PILE part = part_of(&all, 0);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
     fibrad_insitu_facts facts;
     make_rows(s, &part, 0);
     fibrad_insitu_facts_get(s, &facts);
@@ -743,9 +725,6 @@ static void large_particles_are_seen(void) {
     const fibrad_insitu_config config = {.cutoff = 1.9 * large};
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &config) == FIBRAD_OK);
     CHECK(fibrad_insitu_rows(s, &part.bed, 0) == FIBRAD_E_ARGUMENT && strstr(fibrad_insitu_message(s), "the cutoff"));
-    fibrad_insitu_free(s);
-    close_pile(&all);
-    close_pile(&part);
 }
 
 /* ---- a serial reference ---------------------------------------------------------------------------------------- */
@@ -764,16 +743,16 @@ static void step_by_kernel(struct pile *p) {
     const fibrad_scene_config config = {.wall = p->wall, .walls = walls};
     const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id};
     const size_t size = fibrad_scene_size(n, 1);
-    void *block = memory_of(size, 1);
+    FREED void *block = memory_of(size, 1);
     fibrad_scene *scene = NULL;
     fibrad_work work = {.memory.resize = grow};
     CHECK(fibrad_scene_init(&scene, block, size, &config, &spheres, NULL) == FIBRAD_OK);
     fibrad_exchange_rule rule = {
         .emissivity = p->emissivity, .wall_emissivity = p->wall_emissivity, .directions = 50, .paths = 100};
-    uint32_t *col = memory_of((size_t)n * n, sizeof *col);
-    double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
-    fibrad_row *row = memory_of(n, sizeof *row);
-    double(*wall)[2] = memory_of(n, sizeof *wall);
+    FREED uint32_t *col = memory_of((size_t)n * n, sizeof *col);
+    FREED double *f = memory_of((size_t)n * n, sizeof *f), *emission = memory_of(n, sizeof *emission);
+    FREED fibrad_row *row = memory_of(n, sizeof *row);
+    FREED double(*wall)[2] = memory_of(n, sizeof *wall);
     for (uint32_t i = 0; i < n; ++i) {
         row[i] = (fibrad_row){.col = col + (size_t)i * n, .f = f + (size_t)i * n, .wall = wall[i], .capacity = n};
         rule.seed = 3 + p->id[i] * 0xd1342543de82ef95u;
@@ -796,21 +775,15 @@ static void step_by_kernel(struct pile *p) {
         for (uint32_t i = 0; i < n; ++i) p->temperature[i] += p->power[i] / heat_capacity;
     }
     free(work.memory.block);
-    free(block);
-    free(col);
-    free(f);
-    free(emission);
-    free(row);
-    free(wall);
 }
 
 /* Particles change ranks and positions at every third step. The rows stay where they were made. A cutoff that all
  * particles are within is none. */
 static void temperatures_are_those_of_the_kernel(enum walls walls) {
     const struct kind kind = {"reference", 6, {0, 0, 0}, walls, {.3, .8}, 1000, 1, 0};
-    struct pile all = pile_of(&kind), expected = pile_of(&kind);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
-    struct pile part = part_of(&all, 0);
+    OWNED_PILE all = pile_of(&kind), expected = pile_of(&kind);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    OWNED_PILE part = part_of(&all, 0);
     make_rows(s, &part, 0);
     for (int step = 0; step < STEPS; ++step) {
         const fibrad_insitu_state state = state_of(&part);
@@ -836,10 +809,6 @@ static void temperatures_are_those_of_the_kernel(enum walls walls) {
         CHECK(worst < 1e-10);
         CHECK(change > 100 && change < 2000);
     }
-    fibrad_insitu_free(s);
-    close_pile(&all);
-    close_pile(&expected);
-    close_pile(&part);
 }
 
 /* ---- strays ----------------------------------------------------------------------------------------------------- */
@@ -873,10 +842,10 @@ static struct pile without_strays(const struct pile *astray) {
 /* Rows go on with strays. Powers are those of the bed without the strays, and strays have none. */
 static void strays_do_not_end_a_run(void) {
     static const struct kind kind = {"strays", 4, {1, 1, 0}, FLOORS, {.8, .5}, 4, 1, 0};
-    struct pile all = pile_of(&kind);
+    OWNED_PILE all = pile_of(&kind);
     go_astray(&all);
-    struct pile rest = without_strays(&all), part = part_of(&all, 0), known = part_of(&rest, 0);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &kind, 1), *t = insitu_of(MPI_COMM_WORLD, &kind, 1);
+    OWNED_PILE rest = without_strays(&all), part = part_of(&all, 0), known = part_of(&rest, 0);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, &kind, 1), *t = insitu_of(MPI_COMM_WORLD, &kind, 1);
     fibrad_insitu_totals totals[2];
     make_rows(s, &part, 2);
     make_rows(t, &known, 2);
@@ -904,12 +873,6 @@ static void strays_do_not_end_a_run(void) {
     for (size_t i = 0; i < part.bed.n; ++i) /* another particle in the place of one that is left out, so rows are new */
         if (part.id[i] == all.id[FLOWN]) part.id[i] = 12345;
     CHECK(fibrad_insitu_powers(s, &state[0], part.power, NULL) == FIBRAD_E_STATE);
-    fibrad_insitu_free(s);
-    fibrad_insitu_free(t);
-    close_pile(&all);
-    close_pile(&rest);
-    close_pile(&part);
-    close_pile(&known);
 }
 
 /* ---- particles that come and go --------------------------------------------------------------------------------- */
@@ -938,15 +901,15 @@ static double *gather_powers(const struct pile *all, const struct pile *part) {
  * one rank, and are near those of new rows. */
 static void follow_changes(const struct kind *kind, const struct pile *all, const struct pile *before,
                            const struct pile *after, double bound) {
-    struct pile old = part_of(before, 0), now = part_of(after, 1);
-    fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, kind, 2), *t = insitu_of(MPI_COMM_WORLD, kind, 1);
+    OWNED_PILE old = part_of(before, 0), now = part_of(after, 1);
+    OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, kind, 2), *t = insitu_of(MPI_COMM_WORLD, kind, 1);
     fibrad_insitu_totals totals, exact;
     make_rows(s, &old, 4);
     make_rows(t, &now, 4);
     const fibrad_insitu_state state = state_of(&now);
     CHECK(fibrad_insitu_follow(s, &now.bed, 4) == FIBRAD_OK);
     CHECK(fibrad_insitu_powers(t, &state, now.power, &exact) == FIBRAD_OK);
-    double *expected = gather_powers(all, &now);
+    FREED double *expected = gather_powers(all, &now);
     CHECK(fibrad_insitu_powers(s, &state, now.power, &totals) == FIBRAD_OK);
     double *found = gather_powers(all, &now), error = 0, norm = 0, emitted = 0, alone[2] = {0};
     for (size_t i = 0; i < all->bed.n; ++i)
@@ -954,7 +917,7 @@ static void follow_changes(const struct kind *kind, const struct pile *all, cons
     CHECK(error < bound * bound * norm);
     CHECK(fabs(totals.particles + totals.surroundings + totals.wall[0] + totals.wall[1]) < 1e-13 * emitted);
     if (rank == 0) { /* the same by one rank */
-        fibrad_insitu *u = insitu_of(MPI_COMM_SELF, kind, 1);
+        OWNED_INSITU *u = insitu_of(MPI_COMM_SELF, kind, 1);
         const fibrad_insitu_state whole = state_of(after);
         make_rows(u, before, 4);
         CHECK(fibrad_insitu_follow(u, &after->bed, 4) == FIBRAD_OK);
@@ -963,14 +926,8 @@ static void follow_changes(const struct kind *kind, const struct pile *all, cons
             for (size_t i = 0; i < all->bed.n; ++i)
                 if (after->id[k] == all->id[i]) alone[0] = fmax(alone[0], fabs(after->power[k] - found[i]));
         CHECK(alone[0] < 1e-12 * sqrt(norm));
-        fibrad_insitu_free(u);
     }
     CHECK(fibrad_insitu_write(s, path_of("followed")) == FIBRAD_E_STATE);
-    fibrad_insitu_free(s);
-    fibrad_insitu_free(t);
-    close_pile(&old);
-    close_pile(&now);
-    free(expected);
     free(found);
 }
 
@@ -980,7 +937,7 @@ static void what_goes_is_given_back(void) {
     double x[MOST][3], radius[MOST], emissivity[MOST], temperature[MOST], power[MOST], alone = NAN;
     uint64_t id[MOST];
     const double lost = 4 * acos(-1) * (pow(500, 4) - pow(300, 4));
-    fibrad_insitu *s;
+    OWNED_INSITU *s;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, NULL) == FIBRAD_OK);
     for (int gone = 0; gone < 2; ++gone) {
         size_t n = 0;
@@ -997,18 +954,14 @@ static void what_goes_is_given_back(void) {
         if (gone && rank == 0) alone = power[0];
     }
     if (rank == 0) CHECK(fabs(alone / -lost - 1) < 1e-6);
-    fibrad_insitu_free(s);
 }
 
 static void rows_follow_particles(double bound) {
     const struct kind kind = {"followed", 4, {1, 1, 0}, FLOORS, {.8, .5}, 0, 1, 0};
-    struct pile all = pile_of(&kind), some = without(&all, 20), others = without(&all, 31);
+    OWNED_PILE all = pile_of(&kind), some = without(&all, 20), others = without(&all, 31);
     follow_changes(&kind, &all, &all, &some, bound);
     follow_changes(&kind, &all, &some, &all, bound);
     follow_changes(&kind, &all, &some, &others, bound);
-    close_pile(&all);
-    close_pile(&some);
-    close_pile(&others);
 }
 
 /* ---- contacts -------------------------------------------------------------------------------------------------- */
@@ -1065,7 +1018,7 @@ static void check_pairs(const struct pile *all, const double *solid, bool hertz,
 
 /* Contacts conduct the same, to the bit, whoever owns which particle. Their powers add up to zero. */
 static void contacts_conduct(const struct kind *kind, int axis, bool hertz, double gas) {
-    struct pile all = pile_of(kind);
+    OWNED_PILE all = pile_of(kind);
     lay_along(&all, axis);
     for (size_t i = 0; i < all.bed.n; ++i) all.radius[i] *= 1.2;
     double *solid = memory_of(all.bed.n, 2 * sizeof *solid), *kelvin = solid + all.bed.n;
@@ -1083,10 +1036,10 @@ static void contacts_conduct(const struct kind *kind, int axis, bool hertz, doub
         fibrad_insitu_free(self);
         if (gas == 0) check_pairs(&all, solid, hertz, .7, all.power);
     }
-    struct pile part = part_of(&all, kind->spread);
+    OWNED_PILE part = part_of(&all, kind->spread);
     part.bed.conductivity = NULL;
     for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 1 + random_of(part.id[i], 6);
-    fibrad_insitu *s;
+    OWNED_INSITU *s;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &quick) == FIBRAD_OK);
     const fibrad_insitu_state state = state_of(&part);
     make_rows(s, &part, 7);
@@ -1098,9 +1051,6 @@ static void contacts_conduct(const struct kind *kind, int axis, bool hertz, doub
     CHECK(largest > 0 && parts.contacts > 20 && fabs(sum - parts.particles) < 1e-12 * largest);
     CHECK(fabs(left) < 1e-12 * largest && (all.bed.walls == 0 || (parts.wall[0] != 0 && parts.conductance[0] > 0)));
     CHECK(rank > 0 || (whole.contacts == parts.contacts && fabs(whole.particles - parts.particles) < 1e-12 * largest));
-    fibrad_insitu_free(s);
-    close_pile(&all);
-    close_pile(&part);
     free(power);
     free(solid);
 }
@@ -1129,80 +1079,53 @@ enum fault { TWICE, INSIDE, BAD_X, BAD_RADIUS, BAD_EMISSIVITY, BEYOND, NO_BOX, N
 static const fibrad_plane beneath = {2, 0, -.4};
 
 static void spoil(struct pile *p, enum fault fault) {
-    switch (fault) {
-    case TWICE:
-        p->id[9] = p->id[3];
-        break;
-    case INSIDE:
-        memcpy(p->x + 27, p->x + 9, 3 * sizeof *p->x), p->x[27] += .1;
-        break;
-    case BAD_X:
-        p->x[10] = NAN;
-        break;
-    case BAD_RADIUS:
-        p->radius[3] = -1;
-        break;
-    case BAD_EMISSIVITY:
-        p->emissivity[3] = -.1;
-        break;
-    case BEYOND:
-        p->x[11] = -1.5;
-        break;
-    case NO_BOX:
-        p->bed.high[0] = p->bed.low[0];
-        break;
-    case NO_WALL:
-        p->wall_emissivity[1] = 2;
-        break;
-    case ENDLESS:
-        p->wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 3, 9, 2}};
-        memset(p->bed.periodic, 0, sizeof p->bed.periodic);
-        break;
-    default:
-        p->bed.opening = &beneath, p->bed.openings = 1;
-        memmove(p->wall, p->wall + 1, sizeof *p->wall);
-        p->bed.walls = 1;
-        break;
-    }
+    if (fault == TWICE) p->id[9] = p->id[3];
+    if (fault == INSIDE) memcpy(p->x + 27, p->x + 9, 3 * sizeof *p->x), p->x[27] += .1;
+    if (fault == BAD_X) p->x[10] = NAN;
+    if (fault == BAD_RADIUS) p->radius[3] = -1;
+    if (fault == BAD_EMISSIVITY) p->emissivity[3] = -.1;
+    if (fault == BEYOND) p->x[11] = -1.5;
+    if (fault == NO_BOX) p->bed.high[0] = p->bed.low[0];
+    if (fault == NO_WALL) p->wall_emissivity[1] = 2;
+    if (fault == ENDLESS) p->wall[1] = (fibrad_wall){.kind = FIBRAD_WALL_CYLINDER, .cylinder = {3, 3, 9, 2}};
+    if (fault == ENDLESS) memset(p->bed.periodic, 0, sizeof p->bed.periodic);
+    if (fault == OUTSIDE) p->bed.opening = &beneath, p->bed.openings = 1, p->bed.walls = 1;
+    if (fault == OUTSIDE) memmove(p->wall, p->wall + 1, sizeof *p->wall);
 }
 
 static void rows_are_refused(fibrad_insitu *s) {
-    static const int status[FAULTS] = {FIBRAD_E_ARGUMENT, FIBRAD_E_GEOMETRY, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
-                                       FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT, FIBRAD_E_ARGUMENT,
-                                       FIBRAD_E_ENDLESS,  FIBRAD_E_GEOMETRY};
-    static const char *const words[FAULTS] = {"twice",
-                                              "inside",
-                                              "coordinate",
-                                              "radius",
-                                              "its emissivity",
-                                              "beyond wall 1, zmin",
-                                              "no extent along x",
-                                              "wall 2",
-                                              "an opening",
-                                              "beyond the opening"};
+    static const struct {
+        int status;
+        const char *words;
+    } expected[FAULTS] = {{FIBRAD_E_ARGUMENT, "twice"},
+                          {FIBRAD_E_GEOMETRY, "inside"},
+                          {FIBRAD_E_ARGUMENT, "coordinate"},
+                          {FIBRAD_E_ARGUMENT, "radius"},
+                          {FIBRAD_E_ARGUMENT, "its emissivity"},
+                          {FIBRAD_E_ARGUMENT, "beyond wall 1, zmin"},
+                          {FIBRAD_E_ARGUMENT, "no extent along x"},
+                          {FIBRAD_E_ARGUMENT, "wall 2"},
+                          {FIBRAD_E_ENDLESS, "an opening"},
+                          {FIBRAD_E_GEOMETRY, "beyond the opening"}};
     for (int fault = 0; fault < FAULTS; ++fault) {
-        struct pile all = pile_of(&small);
+        OWNED_PILE all = pile_of(&small);
         char named[64];
         spoil(&all, (enum fault)fault);
-        struct pile part = part_of(&all, 0);
-        check_refused(s, fibrad_insitu_rows(s, &part.bed, 0), status[fault], words[fault]);
+        OWNED_PILE part = part_of(&all, 0);
+        check_refused(s, fibrad_insitu_rows(s, &part.bed, 0), expected[fault].status, expected[fault].words);
         snprintf(named, sizeof named, "%llu", (unsigned long long)all.id[3]);
         if (fault <= BEYOND) CHECK(strstr(fibrad_insitu_message(s), named));
-        close_pile(&all);
-        close_pile(&part);
     }
 }
 
 static void powers_are_refused(fibrad_insitu *s, const struct pile *good) {
-    struct pile part = part_of(good, 0);
+    OWNED_PILE part = part_of(good, 0);
     char named[64] = "";
     fibrad_insitu_state state = state_of(&part);
     if (rank == ranks - 1) part.temperature[1] = 0;
     check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "is not above 0");
     snprintf(named, sizeof named, "%llu", (unsigned long long)part.id[1]);
     if (rank == ranks - 1) CHECK(strstr(fibrad_insitu_message(s), named));
-    if (rank == ranks - 1) part.temperature[1] = NAN;
-    check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "is not above 0");
     part.temperature[1] = 300;
     if (rank == ranks - 1) --state.n;
     check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "63 particles, but rows of 64");
@@ -1213,7 +1136,6 @@ static void powers_are_refused(fibrad_insitu *s, const struct pile *good) {
     check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_STATE, "make new rows");
     state.surroundings = -1;
     check_refused(s, fibrad_insitu_powers(s, &state, part.power, NULL), FIBRAD_E_ARGUMENT, "surroundings");
-    close_pile(&part);
 }
 
 /* Radii in another unit than positions, and walls in a wrong place, are refused at once. */
@@ -1222,19 +1144,16 @@ static void wrong_units_are_refused(void) {
     const struct kind open = {"units", 6, {0, 0, 0}, OPEN, {.8, .8}, 0, 1, 0},
                       floors = {"units", 6, {0, 0, 0}, FLOORS, {.8, .8}, 0, 1, 0};
     for (int fault = 0; fault < 3; ++fault) {
-        struct pile all = pile_of(fault < 2 ? &open : &floors);
+        OWNED_PILE all = pile_of(fault < 2 ? &open : &floors);
         for (size_t i = 0; i < all.bed.n && fault < 2; ++i) all.radius[i] *= 100;
         if (fault == 1) all.bed.periodic[1] = 1;
         if (fault == 2) all.wall[0].plane.at += PITCH;
-        struct pile part = part_of(&all, 0);
-        fibrad_insitu *s = insitu_of(MPI_COMM_WORLD, &open, 1);
+        OWNED_PILE part = part_of(&all, 0);
+        OWNED_INSITU *s = insitu_of(MPI_COMM_WORLD, &open, 1);
         check_refused(s, fibrad_insitu_rows(s, &part.bed, 0), FIBRAD_E_GEOMETRY,
                       fault == 0   ? "is its diameter right"
                       : fault == 1 ? "more than the period along y"
                                    : "36 of 216 particles cannot take part; particle");
-        fibrad_insitu_free(s);
-        close_pile(&all);
-        close_pile(&part);
     }
 }
 
@@ -1295,7 +1214,7 @@ static void files_are_refused(fibrad_insitu *s) {
 
 /* Contacts of particles that conduct inside, at meshes, and of conductivities that are not above 0. */
 static void contacts_are_refused(fibrad_insitu *s, const struct pile *good) {
-    struct pile part = part_of(good, 0);
+    OWNED_PILE part = part_of(good, 0);
     const fibrad_insitu_state state = state_of(&part);
     double *solid = memory_of(part.bed.n, 2 * sizeof *solid), *kelvin = solid + part.bed.n;
     for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 2;
@@ -1311,7 +1230,6 @@ static void contacts_are_refused(fibrad_insitu *s, const struct pile *good) {
     if (rank == ranks - 1) solid[1] = 0;
     check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
                   FIBRAD_E_ARGUMENT, "its conductivity at contacts must be above 0, not 0");
-    close_pile(&part);
     free(solid);
 }
 
@@ -1319,11 +1237,11 @@ static void contacts_are_refused(fibrad_insitu *s, const struct pile *good) {
 static void rows_are_too_inaccurate(void) {
     static const uint32_t paths[] = {24, 600};
     conducting = 1e-3;
-    struct pile all = pile_of(&small), part = part_of(&all, 0);
+    OWNED_PILE all = pile_of(&small), part = part_of(&all, 0);
     conducting = 0;
     const fibrad_insitu_state state = state_of(&part);
     for (int enough = 0; enough < 2; ++enough) {
-        fibrad_insitu *s;
+        OWNED_INSITU *s;
         const fibrad_insitu_config config = {
             .cutoff = small.cutoff, .directions = 50, .paths = paths[enough], .seed = 3, .threads = 2};
         CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &config) == FIBRAD_OK);
@@ -1333,15 +1251,12 @@ static void rows_are_too_inaccurate(void) {
             CHECK(status == FIBRAD_OK);
         else
             check_refused(s, status, FIBRAD_E_UNSOLVABLE, "take more paths");
-        fibrad_insitu_free(s);
     }
-    close_pile(&all);
-    close_pile(&part);
 }
 
 /* After all refusals the object is as before. */
 static void refusals(void) {
-    fibrad_insitu *s = NULL;
+    OWNED_INSITU *s = NULL;
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.cutoff = -1}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_insitu_new(&s, MPI_COMM_WORLD, &(fibrad_insitu_config){.accuracy = 3}) == FIBRAD_E_ARGUMENT && !s);
     CHECK(fibrad_accuracy_named("normal") == FIBRAD_ACCURACY_NORMAL);
@@ -1354,9 +1269,9 @@ static void refusals(void) {
     CHECK(strcmp(fibrad_insitu_message(NULL), "") == 0);
     strict = 1;
     s = insitu_of(MPI_COMM_WORLD, &small, 2);
-    struct pile all = pile_of(&small), part = part_of(&all, 0);
+    OWNED_PILE all = pile_of(&small), part = part_of(&all, 0);
     const fibrad_insitu_state state = state_of(&part);
-    double *before = memory_of(part.bed.n, sizeof *before);
+    FREED double *before = memory_of(part.bed.n, sizeof *before);
     check_refused(s, fibrad_insitu_powers(s, &state, before, NULL), FIBRAD_E_STATE, "there are no rows yet");
     check_refused(s, fibrad_insitu_write(s, path_of("refused")), FIBRAD_E_STATE, "no rows");
     make_rows(s, &part, 3);
@@ -1378,10 +1293,6 @@ static void refusals(void) {
     fibrad_insitu_totals totals = {.particles = 1};
     CHECK(fibrad_insitu_rows(s, &(fibrad_insitu_bed){0}, 0) == FIBRAD_OK);
     CHECK(fibrad_insitu_powers(s, &none, NULL, &totals) == FIBRAD_OK && totals.particles == 0);
-    fibrad_insitu_free(s);
-    free(before);
-    close_pile(&all);
-    close_pile(&part);
 }
 
 int main(int argc, char **argv) {

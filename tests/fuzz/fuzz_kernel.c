@@ -31,7 +31,7 @@ struct session {
     bool begun, solved, of_other;
     bool measured; /* temperatures and sigma allow powers to be compared with rounding */
     bool unknown;  /* some temperatures are unknown */
-    bool wide;     /* the input asks for everything: parts of rows, rows of walls, triangles, unknown temperatures */
+    bool wide;     /* the input asks for everything: rows of walls, triangles, unknown temperatures */
 };
 
 enum { BEAM, CAST, RAYS, SURFACE, EXCHANGE, METHODS };
@@ -565,47 +565,6 @@ static void try_heat(struct session *s) {
 
 /* ---- what only wide inputs try ---------------------------------------------------------------------------------- */
 
-/* A beam row in parts, with any memory, has the bits of the row in one piece. */
-static void try_parts(struct session *s) {
-    enum { PARTS = 3 };
-    struct method m;
-    any_method(&m);
-    const uint32_t i = number() % (s->contents.n + 1), n = m.beam.directions;
-    const uint32_t cut[PARTS + 1] = {0, n > 0 ? number() % n : 0, n > 0 ? number() % n : 0, n};
-    uint32_t col[SPHERES], whole_col[SPHERES];
-    double f[SPHERES], wall[WALLS], whole_f[SPHERES], whole_wall[WALLS];
-    fibrad_row row = {.col = col, .f = f, .wall = wall, .capacity = SPHERES};
-    fibrad_row whole = {.col = whole_col, .f = whole_f, .wall = whole_wall, .capacity = SPHERES};
-    struct supply supply[PARTS];
-    fibrad_row_part part[PARTS];
-    int status = FIBRAD_OK;
-    for (uint32_t k = 0; k < PARTS; k++) {
-        part[k] = (fibrad_row_part){.memory = any_memory(&supply[k])};
-        for (int tries = 0; status == FIBRAD_OK; tries++) {
-            status = CALL(fibrad_beam_part(s->scene, &s->work, i, &m.beam, cut[k], cut[k + 1], &part[k]));
-            if (status == FIBRAD_OK) break;
-            REQUIRE(tries < 80);
-            const bool more =
-                (status == FIBRAD_E_WORK && s->work.memory.resize == NULL && give_more(&s->work.memory, &s->supply)) ||
-                (status == FIBRAD_E_CAPACITY && give_more(&part[k].memory, &supply[k])) ||
-                (status == FIBRAD_E_MEMORY && tries < 20);
-            if (more) status = FIBRAD_OK;
-        }
-    }
-    const int joined = CALL(fibrad_beam_join(s->scene, &s->work, i, &m.beam, part, PARTS, &row));
-    if (status != FIBRAD_OK) REQUIRE(joined != FIBRAD_OK);
-    if (joined == FIBRAD_OK && CALL(fibrad_beam_row(s->scene, &s->work, i, &m.beam, &whole)) == FIBRAD_OK) {
-        check_row(&row, s->scene, i, m.beam.points);
-        REQUIRE(row.length == whole.length && row.fallbacks == whole.fallbacks);
-        REQUIRE(memcmp(col, whole_col, row.length * sizeof *col) == 0);
-        REQUIRE(memcmp(f, whole_f, row.length * sizeof *f) == 0);
-        REQUIRE(memcmp(wall, whole_wall, s->contents.config.walls * sizeof *wall) == 0);
-        REQUIRE(memcmp(&row.escaped, &whole.escaped, sizeof row.escaped) == 0);
-        REQUIRE(memcmp(&row.error, &whole.error, sizeof row.error) == 0);
-    }
-    for (uint32_t k = 0; k < PARTS; k++) supply_end(&supply[k]);
-}
-
 /* One batch of the row of a wall or an opening. Where all is black, nothing is reflected. */
 static int any_batch(struct session *s, const fibrad_wall_rule *rule, uint32_t wall, uint32_t part,
                      fibrad_wall_row *row) {
@@ -724,14 +683,11 @@ static void read_rows(struct session *s) {
 }
 
 static void try_wide(struct session *s) {
-    switch (byte() % 4) {
+    switch (byte() % 3) {
     case 0:
-        try_parts(s);
-        break;
-    case 1:
         try_walls(s);
         break;
-    case 2:
+    case 1:
         try_triangles(s);
         break;
     default:
@@ -853,7 +809,6 @@ static void try_furnace(void) {
             write_some(arrays.e, cells);
             write_some(arrays.theta[byte() % 3][byte() % 2], cells);
             write_some(arrays.flux[byte() % 3][byte() % 2], cells);
-            (void)fibrad_furnace_balance(furnace);
             break;
         case 3:
             (void)fibrad_furnace_estimate(furnace, tally, byte() % 2 ? FIBRAD_THETA_PAPER : FIBRAD_THETA_DEFINITION,

@@ -20,11 +20,10 @@
 static const char *const methods[] = {"hfm", "mchf", "mchf-x", "mc"};
 
 struct request {
-    const char *file, *out, *format, *plot, *json, *theta, *scatter;
+    const char *file, *out, *plot, *json, *theta, *scatter;
     int number; /* --case; 0: a file */
     uint64_t seed;
     uint32_t cells[3]; /* 0: the numbers of the case or file */
-    write_furnace_function *write;
     struct furnace_options run;
 };
 
@@ -94,16 +93,13 @@ static const struct option table[] = {
     {0, "outers", "N", "largest number of outer iterations [50]", TO_COUNT(struct request, run.outer_max, 1, 1000000)},
     {OPTION_THREADS(struct request, run.threads)},
     {'o', "output", "OUT",
-     "write the fields of all cells: .csv or .vti (ParaView), - for standard output [summary only]",
+     "write the fields of all cells: .csv or .vti (ParaView), - for .csv on standard output [summary only]",
      TO_PATH(struct request, out)},
-    {0, "format", "NAME", "format of -o -, csv or vti", TO_TEXT(struct request, format)},
     {0, "plot", NULL, "[OUT] draw the centre plane by gnuplot, .png or .svg [furnace.png]", OPTION_OPTIONAL,
      offsetof(struct request, plot), 0, 0, take_plot},
     {0, "json", "OUT", "write the summary as JSON, with all digits [none]", TO_PATH(struct request, json)},
     {0, "quiet", NULL, "print no progress and no report of the outer iterations on standard error",
      TO_FLAG(struct request, run.quiet)},
-    {0, "progress", NULL, "show progress even if standard error is not a terminal [off]",
-     TO_FLAG(struct request, run.progress)},
     {OPTION_HELP},
     {.name = NULL}};
 
@@ -158,17 +154,8 @@ static bool is_standard(const char *path) { return path && output_stdout(path); 
 
 static int furnace_check_outputs(struct request *request) {
     const char *out = request->out;
-    if (request->format && (!out || strcmp(out, "-") != 0)) return message(STATUS_USAGE, "--format is for -o -");
-    if (out && strcmp(out, "-") == 0 && !request->format)
-        return message(STATUS_USAGE, "-o - needs a --format: csv or vti");
-    if (out) {
-        char ending[20];
-        snprintf(ending, sizeof ending, "-.%.16s", request->format ? request->format : "");
-        request->write = write_furnace_find(request->format ? ending : out);
-        if (!request->write && request->format)
-            return message(STATUS_USAGE, "--format: '%.40s' is neither csv nor vti", request->format);
-        if (!request->write) return message_at(STATUS_USAGE, out, 0, "unknown ending; there are .csv and .vti");
-    }
+    if (out && !output_ends(out, ".vti") && !output_ends(out, ".csv") && strcmp(out, "-") != 0)
+        return message_at(STATUS_USAGE, out, 0, "unknown ending; there are .csv and .vti");
     if ((is_standard(out) && is_standard(request->json)) || (out && request->json && output_same(out, request->json)))
         return message_at(STATUS_USAGE, request->json, 0, "is given twice");
     return STATUS_OK;
@@ -277,7 +264,8 @@ static int furnace_compute_and_write(const struct request *request, const fibrad
     if (!status) status = output_open(&plot, request->plot);
     if (!status) status = output_open(&json, request->json);
     if (!status) status = furnace_run(config, &request->run, run);
-    if (!status && request->out) request->write(out.file, run);
+    if (!status && request->out)
+        (output_ends(request->out, ".vti") ? write_furnace_vti : write_furnace_csv)(out.file, run);
     if (!status && request->plot) {
         const char *name = request->number == 0 ? request->file : request->number == 1 ? "case 1" : "case 2";
         status = furnace_plot(&plot, name, run, furnace_is_measured(request), request->number);

@@ -71,7 +71,7 @@ static int furnace_trace_plan(struct furnace_run *run, fibrad_furnace_physics ph
     if (stop) return stop;
     uint64_t done = 0;
     run->bundles += planned;
-    progress_stage(&run->progress, "bundles", 0, planned);
+    (void)progress_stage(&run->progress, "bundles", 0, planned);
 #pragma omp parallel for schedule(dynamic) num_threads(run->threads)
     for (uint64_t first = 0; first < planned; first += FURNACE_BATCH) {
         int status = interrupt_status();
@@ -89,9 +89,10 @@ static int furnace_trace_plan(struct furnace_run *run, fibrad_furnace_physics ph
         uint64_t traced;
 #pragma omp atomic capture
         traced = done += count;
-        if (omp_get_thread_num() == 0 && traced < planned) progress_show(&run->progress, traced);
+        if (omp_get_thread_num() == 0 && traced < planned)
+            (void)progress_stage(&run->progress, "bundles", traced, planned);
     }
-    progress_end(&run->progress, planned);
+    (void)progress_stage(&run->progress, "bundles", planned, planned);
     if (!stop) stop = furnace_status(failed, "bundles");
     return stop ? stop : furnace_add_tallies(run);
 }
@@ -201,9 +202,7 @@ static int furnace_monte_carlo(struct furnace_run *run, const struct furnace_opt
 
 int furnace_run(const fibrad_furnace_config *config, const struct furnace_options *options, struct furnace_run *run) {
     double begun = progress_clock();
-    *run = (struct furnace_run){.config = *config,
-                                .threads = options->threads,
-                                .progress = {.forced = options->progress, .quiet = options->quiet}};
+    *run = (struct furnace_run){.config = *config, .threads = options->threads, .progress.quiet = options->quiet};
     if (run->threads == 0) run->threads = omp_get_max_threads();
     int status = furnace_make(run);
     if (status) return status;

@@ -22,7 +22,6 @@ struct furnace_options {
     fibrad_furnace_scatter scatter;
     bool measure;       /* FURNACE_MC: measure Theta afterwards */
     bool quiet;         /* print no outer iterations and no bar on standard error */
-    bool progress;      /* show a bar also if standard error is no terminal */
     uint64_t bundles;   /* approximate number in the first plan; later plans have as many as the changes of E need */
     int threads;        /* 0: all cores */
     double tolerance;   /* outer iterations end when no cell changes by more than this [K] */

@@ -30,8 +30,8 @@ static int furnace_read_number(const struct reading *r, const char *what, size_t
                                double *value) {
     int status = lines_number(&r->lines, what, r->fields.at[field], value);
     if (status || *value > low || (!above && *value == low)) return status;
-    return message_at(STATUS_INPUT, r->lines.name, r->lines.number, "%s must be %s %g, not %s", what,
-                      above ? "above" : "at least", low, r->fields.at[field]);
+    return lines_fault(&r->lines, "%s must be %s %g, not %s", what, above ? "above" : "at least", low,
+                       r->fields.at[field]);
 }
 
 static int furnace_read_size(struct reading *r) {
@@ -48,9 +48,8 @@ static int furnace_read_cells(struct reading *r) {
         int status = lines_whole(&r->lines, "cells", r->fields.at[1 + a], &count);
         if (status) return status;
         if (count < 1 || (uint64_t)count > FIBRAD_FURNACE_CELLS_MAX / product)
-            return message_at(STATUS_INPUT, r->lines.name, r->lines.number,
-                              "cells must be at least 1 along every axis, and no more than %u together",
-                              FIBRAD_FURNACE_CELLS_MAX);
+            return lines_fault(&r->lines, "cells must be at least 1 along every axis, and no more than %u together",
+                               FIBRAD_FURNACE_CELLS_MAX);
         r->config->cells[a] = (uint32_t)count;
         product *= (uint64_t)count;
     }
@@ -59,8 +58,7 @@ static int furnace_read_cells(struct reading *r) {
 
 static int furnace_set_wall(struct reading *r, size_t w, double temperature, double emissivity) {
     if (r->line_of_wall[w])
-        return message_at(STATUS_INPUT, r->lines.name, r->lines.number, "wall %s was given in line %" PRIu64 " already",
-                          walls[w], r->line_of_wall[w]);
+        return lines_fault(&r->lines, "wall %s was given in line %" PRIu64 " already", walls[w], r->line_of_wall[w]);
     r->line_of_wall[w] = r->lines.number;
     r->config->wall_temperature[w] = temperature;
     r->config->wall_emissivity[w] = emissivity;
@@ -73,32 +71,27 @@ static int furnace_read_wall(struct reading *r) {
     int status = furnace_read_number(r, "wall temperature", 2, 0, true, &temperature);
     if (!status) status = furnace_read_number(r, "emissivity", 3, 0, false, &emissivity);
     if (status) return status;
-    if (emissivity > 1)
-        return message_at(STATUS_INPUT, r->lines.name, r->lines.number, "emissivity must be at most 1, not %s",
-                          r->fields.at[3]);
+    if (emissivity > 1) return lines_fault(&r->lines, "emissivity must be at most 1, not %s", r->fields.at[3]);
     if (strcmp(name, "sides") == 0) {
         for (size_t w = 0; w < 4 && !status; w++) status = furnace_set_wall(r, w, temperature, emissivity);
         return status;
     }
     for (size_t w = 0; w < 6; w++)
         if (strcmp(name, walls[w]) == 0) return furnace_set_wall(r, w, temperature, emissivity);
-    return message_at(STATUS_INPUT, r->lines.name, r->lines.number,
-                      "unknown wall '%.40s'; there are x0, x1, y0, y1, z0, z1 and sides", name);
+    return lines_fault(&r->lines, "unknown wall '%.40s'; there are x0, x1, y0, y1, z0, z1 and sides", name);
 }
 
 static int furnace_read_line(struct reading *r) {
     const char *name = r->fields.at[0];
-    uint64_t line = r->lines.number;
     size_t k = 0;
     while (k < KEYS && strcmp(name, keys[k].name) != 0) k++;
-    if (k == KEYS) return message_at(STATUS_INPUT, r->lines.name, line, "unknown key '%.40s'", name);
+    if (k == KEYS) return lines_fault(&r->lines, "unknown key '%.40s'", name);
     if (r->fields.n != keys[k].values + 1)
-        return message_at(STATUS_INPUT, r->lines.name, line, "%s takes %zu value%s, not %zu", name, keys[k].values,
-                          keys[k].values > 1 ? "s" : "", r->fields.n - 1);
+        return lines_fault(&r->lines, "%s takes %zu value%s, not %zu", name, keys[k].values,
+                           keys[k].values > 1 ? "s" : "", r->fields.n - 1);
     if (k != KEY_WALL && r->line_of[k])
-        return message_at(STATUS_INPUT, r->lines.name, line, "%s was given in line %" PRIu64 " already", name,
-                          r->line_of[k]);
-    r->line_of[k] = line;
+        return lines_fault(&r->lines, "%s was given in line %" PRIu64 " already", name, r->line_of[k]);
+    r->line_of[k] = r->lines.number;
     switch (k) {
     case KEY_SIZE:
         return furnace_read_size(r);

@@ -1,7 +1,6 @@
 /* write_furnace.c - writes the fields of a box. SPDX-License-Identifier: MIT */
 #include "papers/furnace/write_furnace.h"
 
-#include "cli/output.h"
 #include "text/text.h"
 
 void write_furnace_csv(FILE *file, const struct furnace_run *run) {
@@ -52,9 +51,4 @@ void write_furnace_vti(FILE *file, const struct furnace_run *run) {
     furnace_write_field(file, run, "E", run->at.e, false);
     furnace_write_field(file, run, "divq", run->at.divergence, false);
     fputs("      </CellData>\n    </Piece>\n  </ImageData>\n</VTKFile>\n", file);
-}
-
-write_furnace_function *write_furnace_find(const char *path) {
-    if (output_ends(path, ".csv")) return write_furnace_csv;
-    return output_ends(path, ".vti") ? write_furnace_vti : NULL;
 }

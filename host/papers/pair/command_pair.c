@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/message.h"
 #include "cli/options.h"
@@ -29,7 +30,7 @@ struct pair_request {
     /* sphere 1, sphere 2, obstacles */
     uint32_t n;
     double x[SPHERES_MAX], y[SPHERES_MAX], z[SPHERES_MAX], r[SPHERES_MAX];
-    struct method_options methods;
+    bool by_surface; /* --method surface */
     fibrad_surface_rule surface;
     bool plain;       /* --no-correction */
     double error;     /* 0: not given */
@@ -69,6 +70,12 @@ static int take_length(const char *text, void *pair_request) {
     }
 }
 
+static int take_method(const char *text, void *by_surface) {
+    *(bool *)by_surface = strcmp(text, "surface") == 0;
+    if (*(bool *)by_surface || strcmp(text, "exact") == 0) return STATUS_OK;
+    return message(STATUS_USAGE, "--method: '%.40s' is neither exact nor surface; fibrad factors has more", text);
+}
+
 /* Takes the argument of --nf, a built-in number of nodes, into a uint32_t. */
 static int take_nodes(const char *text, void *nodes) {
     uint32_t *wanted = nodes;
@@ -86,21 +93,14 @@ static int take_nodes(const char *text, void *nodes) {
 
 static const struct option pair_table[] = {
     {0, "", NULL, NULL, TO_REQUEST(take_length)},
-    {0, "method", "NAME",
-     "exact, beam (parallel beams), surface (nodes on surfaces), cast (quasi-random rays) or mc (random rays) [exact]",
-     TO_FUNCTION(option_method, struct pair_request, methods.method)},
+    {0, "method", "NAME", "exact or surface (nodes on surfaces) [exact]",
+     TO_FUNCTION(take_method, struct pair_request, by_surface)},
     {0, "obstacle", "X,Y,Z,R", "a sphere in the way; may be repeated [none]", TO_REQUEST(take_obstacle)},
     {0, "error", "E",
      "exact, with obstacles: error allowed, estimated, relative to the factor without obstacles, 1e-12 to 1; if "
      "spheres overlap, each further digit takes ten times as long [1e-9; 1e-5 if spheres overlap]",
      TO_NUMBER(struct pair_request, error, 1e-12, 1)},
-    {0, "check", NULL, "compare the exact factor with two of GSL's quadratures [off]",
-     TO_FLAG(struct pair_request, check)},
-    {0, "directions", "N",
-     "beam: number of directions, " TEXT_DIRECTIONS
-     "; the error falls as N^-1.5 [" TEXT_OF(FIBRAD_DIRECTIONS_DEFAULT) "]",
-     TO_COUNT(struct pair_request, methods.beam.directions, FIBRAD_DIRECTIONS_MIN, FIBRAD_DIRECTIONS_MAX)},
-    OPTIONS_METHODS(struct pair_request),
+    {0, "check", NULL, "compare the exact factor with a quadrature by GSL [off]", TO_FLAG(struct pair_request, check)},
     {0, "nf", "N",
      "surface: nodes on each sphere, a Fibonacci number from " TEXT_OF(FIBRAD_NODES_MIN) " to " TEXT_OF(
          FIBRAD_NODES_MAX) " [" TEXT_OF(FIBRAD_NODES_DEFAULT) "]",
@@ -121,9 +121,8 @@ static int pair_help(void) {
          "Examples:\n"
          "  fibrad pair 1 1 0\n"
          "  fibrad pair 1 0.3 0.05 --check\n"
-         "  fibrad pair 1 1 1 --obstacle 0.8,0,1.5,0.4 --method beam --directions 4181\n"
-         "  fibrad pair 1 1 1 --obstacle 0.8,0,1.5,0.4 --method surface --nf 144\n"
-         "  fibrad pair 1 1 2 --method cast --rays 200000");
+         "  fibrad pair 1 1 1 --obstacle 0.8,0,1.5,0.4\n"
+         "  fibrad pair 1 1 1 --obstacle 0.8,0,1.5,0.4 --method surface --nf 144");
     return STATUS_OK;
 }
 
@@ -132,44 +131,32 @@ static int pair_parse(struct pair_request *request, int argc, char **argv) {
     const int status = options_read("pair", pair_table, argc, argv, request);
     if (status) return status;
     if (request->given < 3) return message(STATUS_USAGE, "R1, R2 and GAP are needed; see fibrad pair --help");
-    if (request->check && (request->methods.method != METHOD_EXACT || request->n > 2))
+    if (request->check && (request->by_surface || request->n > 2))
         return message(STATUS_USAGE, "--check is for the exact factor without obstacles");
-    if (request->error > 0 && (request->methods.method != METHOD_EXACT || request->n == 2))
+    if (request->error > 0 && (request->by_surface || request->n == 2))
         return message(STATUS_USAGE, "--error is for the exact factor with obstacles");
     if (request->gap <= -2 * fmin(request->r1, request->r2))
         return message(STATUS_USAGE, "GAP: %g: one sphere lies inside the other", request->gap);
     request->r[0] = request->r1;
     request->r[1] = request->r2;
     request->z[1] = request->r1 + request->r2 + request->gap;
-    if ((request->surface.nodes || request->plain) && request->methods.method != METHOD_SURFACE)
+    if ((request->surface.nodes || request->plain) && !request->by_surface)
         return message(STATUS_USAGE, "--nf and --no-correction are for --method surface");
     if (request->plain) request->surface.flags |= FIBRAD_SURFACE_NO_CORRECTION;
     if (!request->surface.nodes) request->surface.nodes = FIBRAD_NODES_DEFAULT;
-    return methods_check(&request->methods);
-}
-
-static int report_check(struct report *report, const char *name, int error, double value, double abserr, double f12) {
-    char text[120];
-    if (error) return message(STATUS_USAGE, "%s: %s", name, gsl_strerror(error));
-    snprintf(text, sizeof text, "%.17g error %.3g difference %.3g", value, abserr, value / f12 - 1);
-    report_text(report, name, text);
     return STATUS_OK;
 }
 
-/* Compares the kernel's value with GSL. Differences are relative to the kernel's value. */
+/* Compares the kernel's value with GSL. The difference is relative to the kernel's value. */
 static int pair_check(struct pair_request *request, double f12) {
     double value = 0, abserr = 0;
-    int status = STATUS_OK;
-    report_value(&request->report, "kernel", f12, 17);
-    if (request->gap >= 0) {
-        const int error = exact_gsl_polar(request->r1, request->r2, request->gap, &value, &abserr);
-        status = report_check(&request->report, "gsl_polar", error, value, abserr, f12);
-    } else {
-        report_text(&request->report, "gsl_polar", "none: the spheres overlap");
-    }
-    if (status) return status;
+    char text[120];
     const int error = exact_gsl_lens(request->r1, request->r2, request->gap, &value, &abserr);
-    return report_check(&request->report, "gsl_lens", error, value, abserr, f12);
+    if (error) return message(STATUS_USAGE, "GSL: %s", gsl_strerror(error));
+    report_value(&request->report, "kernel", f12, 17);
+    snprintf(text, sizeof text, "%.17g error %.3g difference %.3g", value, abserr, value / f12 - 1);
+    report_text(&request->report, "gsl_lens", text);
+    return STATUS_OK;
 }
 
 static int pair_exact(struct pair_request *request, double *f12) {
@@ -204,23 +191,17 @@ static fibrad_spheres pair_spheres(const struct pair_request *request, uint32_t 
                             .n = request->n - first};
 }
 
-/* Makes a scene of the spheres in *block. The caller frees *block. Refuses spheres that make no scene. */
-static int pair_scene(const struct pair_request *request, fibrad_scene **scene, void **block) {
-    const fibrad_spheres spheres = pair_spheres(request, 0);
-    fibrad_fault fault;
-    const int status = fibrad_heap_scene(scene, block, NULL, &spheres, &fault);
-    if (status == FIBRAD_E_MEMORY) return message_memory();
-    return status ? pair_refuse(status, &fault) : STATUS_OK;
-}
-
 /* Refuses spheres that make no scene. facts: of the scene. */
 static int pair_facts(const struct pair_request *request, fibrad_scene_facts *facts) {
+    const fibrad_spheres spheres = pair_spheres(request, 0);
     fibrad_scene *scene;
+    fibrad_fault fault;
     void *block;
-    const int status = pair_scene(request, &scene, &block);
+    const int status = fibrad_heap_scene(&scene, &block, NULL, &spheres, &fault);
     if (!status) fibrad_scene_describe(scene, facts);
     free(block);
-    return status;
+    if (status == FIBRAD_E_MEMORY) return message_memory();
+    return status ? pair_refuse(status, &fault) : STATUS_OK;
 }
 
 /* The exact factor with obstacles. report_wanted warns if the error is not reached: that of --error, or the default. */
@@ -243,75 +224,6 @@ static int pair_reference(struct pair_request *request, double *f12) {
     return STATUS_OK;
 }
 
-/* Scene, work memory and one row of a few spheres. */
-struct few {
-    fibrad_scene *scene;
-    void *block; /* of the scene */
-    fibrad_work work;
-    uint32_t col[SPHERES_MAX];
-    double f[SPHERES_MAX], length[SPHERES_MAX], angle[SPHERES_MAX];
-};
-
-/* The index of the entry of sphere j in a row. row->length: there is none. */
-static uint32_t find_column(const fibrad_row *row, uint32_t j) {
-    uint32_t k = 0;
-    while (k < row->length && row->col[k] != j) ++k;
-    return k;
-}
-
-/* The factor from sphere i to sphere j, by beams of sphere i. */
-static int beam_factor(struct few *few, struct pair_request *request, uint32_t i, uint32_t j, double *f) {
-    fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
-    const int status = fibrad_beam_row(few->scene, &few->work, i, &request->methods.beam, &row);
-    if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
-    const uint32_t k = find_column(&row, j);
-    *f = k < row.length ? row.f[k] : 0;
-    struct report *report = &request->report;
-    report_value(report, report_key(report, "F%" PRIu32 "%" PRIu32 "_raw", i + 1, j + 1), *f, 17);
-    report_value(report, report_key(report, "error_estimate_%" PRIu32, i + 1), row.error, 3);
-    return STATUS_OK;
-}
-
-static int pair_beam(struct few *few, struct pair_request *request, double *f12) {
-    double there = 0, back = 0;
-    int status = beam_factor(few, request, 0, 1, &there);
-    if (!status) status = beam_factor(few, request, 1, 0, &back);
-    const double ratio = request->r2 / request->r1;
-    *f12 = (there + ratio * ratio * back) / 2;
-    return status;
-}
-
-/* F12 by rays from sphere 1. */
-static int pair_cast(struct few *few, struct pair_request *request, double *f12) {
-    const fibrad_cast_rule *rule = &request->methods.cast;
-    fibrad_row row = {.col = few->col, .f = few->f, .capacity = SPHERES_MAX};
-    const int status =
-        fibrad_cast_row(few->scene, &few->work, 0, rule, &row, &(fibrad_cast_means){few->length, few->angle});
-    if (status) return message(STATUS_USAGE, "%s", fibrad_status_text(status));
-    const uint32_t k = find_column(&row, 1);
-    *f12 = k < row.length ? row.f[k] : 0;
-    report_count(&request->report, "rays", rule->rays);
-    report_value(&request->report, "error_estimate", row.error, 3);
-    if (k < row.length) {
-        report_value(&request->report, "mean_ray_length", few->length[k], 17);
-        report_value(&request->report, "mean_angle", few->angle[k], 17);
-    }
-    return STATUS_OK;
-}
-
-static int pair_rows(struct pair_request *request, double *f12) {
-    struct few *few = calloc(1, sizeof *few);
-    if (!few) return message_memory();
-    few->work.memory.resize = fibrad_heap_resize;
-    int status = pair_scene(request, &few->scene, &few->block);
-    if (!status)
-        status = request->methods.method == METHOD_BEAM ? pair_beam(few, request, f12) : pair_cast(few, request, f12);
-    free(few->block);
-    free(few->work.memory.block);
-    free(few);
-    return status;
-}
-
 static int pair_surface(struct pair_request *request, double *f12) {
     const fibrad_spheres obstacles = pair_spheres(request, 2);
     fibrad_scene_facts of_scene;
@@ -331,10 +243,8 @@ static int pair_surface(struct pair_request *request, double *f12) {
 static int pair_compute(struct pair_request *request) {
     double f12 = 0;
     int status;
-    if (request->methods.method == METHOD_SURFACE)
+    if (request->by_surface)
         status = pair_surface(request, &f12);
-    else if (request->methods.method != METHOD_EXACT)
-        status = pair_rows(request, &f12);
     else
         status = request->n > 2 ? pair_reference(request, &f12) : pair_exact(request, &f12);
     if (!status) report_value(&request->report, "F12", f12, 17);

@@ -1,6 +1,7 @@
 /* command_reproduce.c - `fibrad reproduce`: our numbers beside those of the papers. SPDX-License-Identifier: MIT */
 #include <errno.h>
-#include <stdlib.h>
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -20,24 +21,18 @@ static const struct {
     {"fig7-9", "two spheres, and a third one that touches both", reproduce_third_sphere},
     {"fig10", "face-centred cubic beds: sum of the factors against distance", reproduce_fig10},
     {"table1", "time for all factors of random beds", reproduce_table1},
-    {"pebble-pair", "two pebbles: factor, ray length, angle, received radiation", reproduce_pebble_pair},
-    {"pebble-rays", "two pebbles by rays: error, and rays for 1 %", reproduce_pebble_rays},
+    {"pebble-pair", "two pebbles: where the radiation that one receives arrives", reproduce_pebble_pair},
+    {"pebble-rays", "two pebbles by rays: factor, ray length, angle, error, and rays for 1 %", reproduce_pebble_rays},
     {"pebble-bed", "random bed of pebbles: factors within 2 and 3 diameters", reproduce_pebble_bed},
     {"conductivity", "grey spheres: exchange factor F_E of a random bed and of lattices", reproduce_conductivity},
     {"correlations", "grey spheres: F_E of random beds beside correlations that reactor codes use",
      reproduce_correlations},
-    {"conducting", "spheres that conduct: F_E against k*", reproduce_conducting},
-    {"contacts", "beds with contacts and gas: conductivities that were measured", reproduce_contacts},
-    {"exchange", "grey spheres: exchange factor against the distance of the centres", reproduce_exchange},
-    {"exchange-wall", "grey spheres: exchange factor to a wall against distance", reproduce_exchange_wall},
-    {"faces", "grey spheres: emissivity and absorptance of the face of a bed", reproduce_faces},
 };
 enum { EXPERIMENTS = sizeof experiments / sizeof *experiments };
 
 struct reproduce_request {
-    const char *directory;
-    int only; /* number of the experiment; -1: all */
-    bool no_plots;
+    const char *directory; /* for files; NULL: no files are written */
+    int only;              /* number of the experiment; -1: all */
 };
 
 static int take_experiment(const char *name, void *only) {
@@ -48,10 +43,8 @@ static int take_experiment(const char *name, void *only) {
 }
 
 static const struct option reproduce_table[] = {
-    {'o', "output", "DIR", "write CSV files and plots into this folder [none]",
-     TO_PATH(struct reproduce_request, directory)},
+    {'o', "output", "DIR", "write CSV files into this folder [none]", TO_PATH(struct reproduce_request, directory)},
     {0, "only", "NAME", "run this experiment only [all]", TO_FUNCTION(take_experiment, struct reproduce_request, only)},
-    {0, "no-plots", NULL, "write CSV files only [off]", TO_FLAG(struct reproduce_request, no_plots)},
     {OPTION_HELP},
     {.name = NULL}};
 
@@ -68,43 +61,40 @@ static int reproduce_help(void) {
     return STATUS_OK;
 }
 
-static int run_experiment(struct reproduce *reproduce, int which) {
-    reproduce->experiment = experiments[which].name;
-    reproduce->data = open_memstream(&reproduce->text, &reproduce->length);
-    if (!reproduce->data) return message_memory();
-    printf("\n%s: %s\n", experiments[which].name, experiments[which].what);
-    const double begun = progress_clock();
-    int status = experiments[which].run(reproduce);
-    fprintf(stderr, "%s: %.1f s\n", experiments[which].name, progress_clock() - begun);
-    fclose(reproduce->data);
-    free(reproduce->text);
-    return status ? status : interrupt_status();
+/* Opens NAME.csv in the folder. directory NULL: nothing is kept. */
+static int open_csv(struct output *output, char path[PATH_MAX], const char *directory, const char *name) {
+    const int length = snprintf(path, PATH_MAX, directory ? "%s/%s.csv" : "/dev/null", directory, name);
+    if (length >= PATH_MAX) return message_at(STATUS_FILE, directory, 0, "the name is too long");
+    return output_open(output, path);
 }
 
-static int open_directory(struct reproduce *reproduce, char **path) {
-    if (!reproduce->directory) return STATUS_OK;
-    if (mkdir(reproduce->directory, 0777) != 0 && errno != EEXIST)
-        return message_at(STATUS_FILE, reproduce->directory, 0, "%s", strerror(errno));
-    *path = reproduce_path(reproduce, "comparison", ".csv");
-    if (!*path) return message_memory();
-    const int status = output_open(&reproduce->comparison, *path);
-    if (!status)
-        fputs("experiment,what,source,unit,theirs,ours,difference_percent_or_points\n", reproduce->comparison.file);
-    return status;
+static int run_experiment(struct reproduce *reproduce, int which, const char *directory) {
+    const char *name = experiments[which].name;
+    struct output data = {0};
+    char path[PATH_MAX];
+    int status = open_csv(&data, path, directory, name);
+    if (status) return status;
+    reproduce->experiment = name, reproduce->data = data.file;
+    printf("\n%s: %s\n", name, experiments[which].what);
+    const double begun = progress_clock();
+    status = experiments[which].run(reproduce);
+    fprintf(stderr, "%s: %.1f s\n", name, progress_clock() - begun);
+    return output_close(&data, status ? status : interrupt_status());
 }
 
 int command_reproduce(int argc, char **argv) {
     struct reproduce_request request = {.only = -1};
     int status = options_read("reproduce", reproduce_table, argc, argv, &request);
     if (status) return status == STATUS_HELP ? reproduce_help() : status;
-    struct reproduce reproduce = {.directory = request.directory, .plots = !request.no_plots};
-    char *path = NULL;
-    status = open_directory(&reproduce, &path);
-    if (!status)
-        printf("%-12s %-70s %-5s %12s %12s     %s\n", "experiment", "what", "from", "theirs", "ours", "difference");
+    struct reproduce reproduce = {.data = NULL};
+    char path[PATH_MAX];
+    if (request.directory && mkdir(request.directory, 0777) != 0 && errno != EEXIST)
+        return message_at(STATUS_FILE, request.directory, 0, "%s", strerror(errno));
+    status = open_csv(&reproduce.comparison, path, request.directory, "comparison");
+    if (status) return status;
+    fputs("experiment,what,source,unit,theirs,ours,difference_percent_or_points\n", reproduce.comparison.file);
+    printf("%-12s %-70s %-5s %12s %12s     %s\n", "experiment", "what", "from", "theirs", "ours", "difference");
     for (int k = 0; k < EXPERIMENTS && !status; ++k)
-        if (request.only < 0 || request.only == k) status = run_experiment(&reproduce, k);
-    status = output_close(&reproduce.comparison, status);
-    free(path);
-    return status;
+        if (request.only < 0 || request.only == k) status = run_experiment(&reproduce, k, request.directory);
+    return output_close(&reproduce.comparison, status);
 }

@@ -14,14 +14,9 @@
 
 /* The run of `fibrad reproduce`, and the current experiment. */
 struct reproduce {
-    const char *directory; /* for files; NULL: no files are written */
-    bool plots;
-    struct output comparison; /* comparison.csv */
+    struct output comparison; /* comparison.csv, if files are written */
     const char *experiment;   /* name of the current experiment, at the beginning of each line */
-    /* data of the current experiment as CSV: write to `data`; text [length] has them */
-    FILE *data;
-    char *text;
-    size_t length;
+    FILE *data;               /* of the current experiment as CSV, the header line first */
 };
 
 /* The source of a number that ours is compared with: the paper, or an independent calculation by its method. */
@@ -34,19 +29,16 @@ struct reproduce {
 void reproduce_compare(struct reproduce *reproduce, const char *source, const char *unit, double theirs, double ours,
                        const char *what, ...) __attribute__((format(printf, 6, 7)));
 
-/* The path DIRECTORY/NAME and the ending, to be freed. NULL: no memory. */
-char *reproduce_path(const struct reproduce *reproduce, const char *name, const char *ending);
-
-/* Writes the data of the experiment as NAME.csv, and NAME.svg by a gnuplot script that reads them from $data. script
- * NULL: no picture. Returns a status. */
-int reproduce_figure(struct reproduce *reproduce, const char *name, const char *script);
-
-/* An experiment: writes its data to reproduce->data, the header line first, and compares numbers. Returns a status. */
+/* An experiment: writes its data and compares numbers. Returns a status. */
 typedef int experiment(struct reproduce *reproduce);
 
 experiment reproduce_fig3, reproduce_fig4, reproduce_third_sphere, reproduce_fig10, reproduce_table1,
-    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations,
-    reproduce_conducting, reproduce_contacts, reproduce_exchange, reproduce_exchange_wall, reproduce_faces;
+    reproduce_pebble_pair, reproduce_pebble_rays, reproduce_pebble_bed, reproduce_conductivity, reproduce_correlations;
+
+/* Correlations for the radiative exchange factor F_E = k/(4 sigma T^3 d) of a bed without gas, whose spheres have one
+ * temperature each. emissivity above 0, at most 1; porosity: the volume between spheres over that of the bed. */
+double correlation_zehner_bauer_schluender(double emissivity, double porosity);
+double correlation_kunii_smith(double emissivity, double porosity);
 
 /* ---- rows of a bed, one thread ---- */
 
@@ -74,16 +66,5 @@ struct row_rule {
 /* Computes row i by the rule of `method`. rows->col and rows->f get the entries, *row the other results. Returns a
  * status. */
 int rows_row(struct rows *rows, const struct row_rule *method, uint32_t i, fibrad_row *row);
-
-/* ---- grey spheres of one emissivity, one thread ---- */
-
-/* F_E of a periodic bed of unit spheres, as the mean of three axes, with `paths` paths from each sphere. conductivity:
- * k* = k_s/(4 sigma T^3 d) of the spheres; INFINITY: each has one temperature. Returns a status. */
-int grey_conduction(const struct bed *bed, double emissivity, double conductivity, uint32_t paths, double *factor);
-
-/* Exchange factors of a bed in a scene. The emissivities of spheres in `rule` are not used. Free the factors with
- * fibrad_bed_matrix_free. Returns a status. */
-int grey_factors(const struct bed *bed, const fibrad_scene_config *scene, const fibrad_exchange_rule *rule,
-                 double emissivity, const fibrad_bed_rule *options, fibrad_bed_matrix **factors);
 
 #endif

@@ -24,7 +24,7 @@ class Light:
     direction
         (3,) the way that the light goes, of any length above 0.
     flux
-        [W/m2] across the direction.
+        [W/m2] on a plane across the direction.
     half_angle
         [rad] of the cone of directions. 0: parallel.
     directions

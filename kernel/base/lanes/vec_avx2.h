@@ -57,18 +57,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm256_set_pd(table[k[3]], table[k[2]], table[k[1]], table[k[0]]);
 }
-static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4]) {
-    __m256d a = _mm256_load_pd(table[k[0]]), b = _mm256_load_pd(table[k[1]]);
-    __m256d c = _mm256_load_pd(table[k[2]]), d = _mm256_load_pd(table[k[3]]);
-    __m256d ab = _mm256_unpacklo_pd(a, b), cd = _mm256_unpacklo_pd(c, d);
-    __m256d ab_odd = _mm256_unpackhi_pd(a, b), cd_odd = _mm256_unpackhi_pd(c, d);
-    to[0] = _mm256_permute2f128_pd(ab, cd, 0x20), to[1] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x20);
-    to[2] = _mm256_permute2f128_pd(ab, cd, 0x31), to[3] = _mm256_permute2f128_pd(ab_odd, cd_odd, 0x31);
-}
-static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { fibrad_copy(p, from, VD_LANES * sizeof *p); }
-static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
-    return (void)size, vd_gather(table, k);
-}
 static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
@@ -96,33 +84,11 @@ static inline void vf_storeu(float *p, vf a) { _mm256_storeu_ps(p, a); }
 static inline vf vf_sqrt(vf a) { return _mm256_sqrt_ps(a); }
 static inline vf vf_min(vf a, vf b) { return _mm256_min_ps(a, b); }
 static inline vf vf_max(vf a, vf b) { return _mm256_max_ps(a, b); }
-static inline vf vf_abs(vf a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
 static inline vw vf_lt(vf a, vf b) { return _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
 static inline vf vf_select(vw m, vf a, vf b) { return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(m)); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
-static inline __m256 vf_rows_four_apart(float (*table)[4], const uint32_t *k) {
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(table[k[0]])), _mm_load_ps(table[k[4]]), 1);
-}
-static inline void vf_gather_four(float (*table)[4], const uint32_t *k, vf to[4]) {
-    __m256 a = vf_rows_four_apart(table, k), b = vf_rows_four_apart(table, k + 1);
-    __m256 c = vf_rows_four_apart(table, k + 2), d = vf_rows_four_apart(table, k + 3);
-    __m256 ab = _mm256_unpacklo_ps(a, b), cd = _mm256_unpacklo_ps(c, d);
-    __m256 ab_last = _mm256_unpackhi_ps(a, b), cd_last = _mm256_unpackhi_ps(c, d);
-    to[0] = _mm256_shuffle_ps(ab, cd, 0x44), to[1] = _mm256_shuffle_ps(ab, cd, 0xee);
-    to[2] = _mm256_shuffle_ps(ab_last, cd_last, 0x44), to[3] = _mm256_shuffle_ps(ab_last, cd_last, 0xee);
-}
 static inline vn vn_zero(void) { return _mm256_setzero_si256(); }
-static inline vn vn_set1(uint32_t n) { return _mm256_set1_epi32((int)n); }
 static inline vn vn_load(const uint32_t *p) { return _mm256_load_si256((const __m256i *)(const void *)p); }
-static inline vn vn_sub(vn a, vn b) { return _mm256_sub_epi32(a, b); }
-static inline vn vn_select(vw m, vn a, vn b) { return _mm256_blendv_epi8(b, a, m); }
-static inline vn vn_power_of_two(vf k) { return _mm256_sllv_epi32(vn_set1(1), _mm256_cvtps_epi32(k)); }
-static inline vn vn_or_lt(vn n, vn m, vf a, vf b) {
-    return _mm256_or_si256(n, _mm256_and_si256(m, _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ))));
-}
-static inline uint32_t vn_beyond_bits(vn n, vn m) {
-    return ~(uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_and_si256(n, m), n))) & 255;
-}
 static inline void vn_store(uint32_t *p, vn n) { _mm256_store_si256((__m256i *)(void *)p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     __m256i n = _mm256_loadu_si256((const __m256i *)(const void *)p);
@@ -133,7 +99,7 @@ static inline vn vn_count_lt(vn n, vf a, vf b) {
 }
 /* Shifts by 32 and more leave no bits. */
 static inline vn vn_below(vf k) {
-    const __m256i by = _mm256_max_epi32(_mm256_cvtps_epi32(k), _mm256_setzero_si256()), all = vn_set1(UINT32_MAX);
+    const __m256i by = _mm256_max_epi32(_mm256_cvtps_epi32(k), _mm256_setzero_si256()), all = _mm256_set1_epi32(-1);
     return _mm256_andnot_si256(_mm256_sllv_epi32(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm256_testz_si256(n, n); }

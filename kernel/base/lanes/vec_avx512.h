@@ -41,29 +41,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)(const void *)k), table, 8);
 }
-static inline __m512d vd_rows_four_apart(double (*table)[4], const uint32_t *k) {
-    return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(table[k[0]])), _mm256_load_pd(table[k[4]]), 1);
-}
-static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4]) {
-    __m512d a = vd_rows_four_apart(table, k), b = vd_rows_four_apart(table, k + 1);
-    __m512d c = vd_rows_four_apart(table, k + 2), d = vd_rows_four_apart(table, k + 3);
-    __m512d ab = _mm512_unpacklo_pd(a, b), cd = _mm512_unpacklo_pd(c, d);
-    __m512d ab_odd = _mm512_unpackhi_pd(a, b), cd_odd = _mm512_unpackhi_pd(c, d);
-    /* ab: a0 b0 a2 b2 | e0 f0 e2 f2, cd: c0 d0 c2 d2 | g0 h0 g2 h2 */
-    const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13),
-                  high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-    to[0] = _mm512_permutex2var_pd(ab, low, cd), to[1] = _mm512_permutex2var_pd(ab_odd, low, cd_odd);
-    to[2] = _mm512_permutex2var_pd(ab, high, cd), to[3] = _mm512_permutex2var_pd(ab_odd, high, cd_odd);
-}
-static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) {
-    _mm256_storeu_si256((__m256i *)(void *)p, _mm256_loadu_si256((const __m256i *)(const void *)from));
-}
-static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
-    __m512i index = _mm512_cvtepu32_epi64(_mm256_loadu_si256((const __m256i *)(const void *)k));
-    if (size > 16) return _mm512_i64gather_pd(index, table, 8);
-    if (size > 8) return _mm512_permutex2var_pd(vd_load(table), index, vd_load(table + 8));
-    return _mm512_permutexvar_pd(index, vd_load(table));
-}
 static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
@@ -91,34 +68,11 @@ static inline void vf_storeu(float *p, vf a) { _mm512_storeu_ps(p, a); }
 static inline vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
 static inline vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
 static inline vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
-static inline vf vf_abs(vf a) { return _mm512_abs_ps(a); }
 static inline vw vf_lt(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline vf vf_select(vw m, vf a, vf b) { return _mm512_mask_blend_ps(m, b, a); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
-static inline __m512 vf_rows_four_apart(float (*table)[4], const uint32_t *k) {
-    __m512 rows = _mm512_castps128_ps512(_mm_load_ps(table[k[0]]));
-    rows = _mm512_insertf32x4(rows, _mm_load_ps(table[k[4]]), 1);
-    rows = _mm512_insertf32x4(rows, _mm_load_ps(table[k[8]]), 2);
-    return _mm512_insertf32x4(rows, _mm_load_ps(table[k[12]]), 3);
-}
-static inline void vf_gather_four(float (*table)[4], const uint32_t *k, vf to[4]) {
-    __m512 a = vf_rows_four_apart(table, k), b = vf_rows_four_apart(table, k + 1);
-    __m512 c = vf_rows_four_apart(table, k + 2), d = vf_rows_four_apart(table, k + 3);
-    __m512 ab = _mm512_unpacklo_ps(a, b), cd = _mm512_unpacklo_ps(c, d);
-    __m512 ab_last = _mm512_unpackhi_ps(a, b), cd_last = _mm512_unpackhi_ps(c, d);
-    to[0] = _mm512_shuffle_ps(ab, cd, 0x44), to[1] = _mm512_shuffle_ps(ab, cd, 0xee);
-    to[2] = _mm512_shuffle_ps(ab_last, cd_last, 0x44), to[3] = _mm512_shuffle_ps(ab_last, cd_last, 0xee);
-}
 static inline vn vn_zero(void) { return _mm512_setzero_si512(); }
-static inline vn vn_set1(uint32_t n) { return _mm512_set1_epi32((int)n); }
 static inline vn vn_load(const uint32_t *p) { return _mm512_load_si512(p); }
-static inline vn vn_sub(vn a, vn b) { return _mm512_sub_epi32(a, b); }
-static inline vn vn_select(vw m, vn a, vn b) { return _mm512_mask_blend_epi32(m, b, a); }
-static inline vn vn_power_of_two(vf k) { return _mm512_sllv_epi32(vn_set1(1), _mm512_cvtps_epi32(k)); }
-static inline vn vn_or_lt(vn n, vn m, vf a, vf b) {
-    return _mm512_mask_or_epi32(n, _mm512_cmp_ps_mask(b, a, _CMP_GT_OQ), n, m);
-}
-static inline uint32_t vn_beyond_bits(vn n, vn m) { return _mm512_cmpneq_epi32_mask(_mm512_and_si512(n, m), n); }
 static inline void vn_store(uint32_t *p, vn n) { _mm512_store_si512((__m512i *)(void *)p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     __m512i n = _mm512_loadu_si512(p);

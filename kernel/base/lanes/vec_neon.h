@@ -39,16 +39,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return vcombine_f64(vld1_f64(table + k[0]), vld1_f64(table + k[1]));
 }
-static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4]) {
-    for (int m = 0; m < 4; m += 2) {
-        float64x2_t a = vld1q_f64(table[k[0]] + m), b = vld1q_f64(table[k[1]] + m);
-        to[m] = vzip1q_f64(a, b), to[m + 1] = vzip2q_f64(a, b);
-    }
-}
-static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { vst1_u32(p, vld1_u32(from)); }
-static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
-    return (void)size, vd_gather(table, k);
-}
 static inline vd vd_loadu(const double *p) { return vld1q_f64(p); }
 static inline void vd_store(double *p, vd a) { vst1q_f64(p, a); }
 static inline void vd_storeu(double *p, vd a) { vst1q_f64(p, a); }
@@ -78,30 +68,12 @@ static inline vf vf_load(const float *p) { return vld1q_f32(p); }
 static inline void vf_storeu(float *p, vf a) { vst1q_f32(p, a); }
 static inline vf vf_sqrt(vf a) { return vsqrtq_f32(a); }
 static inline vf vf_min(vf a, vf b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
-static inline vf vf_abs(vf a) { return vabsq_f32(a); }
 static inline vw vf_lt(vf a, vf b) { return vcltq_f32(a, b); }
 static inline vf vf_select(vw m, vf a, vf b) { return vbslq_f32(m, a, b); }
 static inline vf vf_max(vf a, vf b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return vn_mask_bits(vcltq_f32(a, b)); }
-static inline void vf_gather_four(float (*table)[4], const uint32_t *k, vf to[4]) {
-    float32x4_t a = vld1q_f32(table[k[0]]), b = vld1q_f32(table[k[1]]);
-    float32x4_t c = vld1q_f32(table[k[2]]), d = vld1q_f32(table[k[3]]);
-    float64x2_t ab = vreinterpretq_f64_f32(vzip1q_f32(a, b)), cd = vreinterpretq_f64_f32(vzip1q_f32(c, d));
-    to[0] = vreinterpretq_f32_f64(vzip1q_f64(ab, cd)), to[1] = vreinterpretq_f32_f64(vzip2q_f64(ab, cd));
-    ab = vreinterpretq_f64_f32(vzip2q_f32(a, b)), cd = vreinterpretq_f64_f32(vzip2q_f32(c, d));
-    to[2] = vreinterpretq_f32_f64(vzip1q_f64(ab, cd)), to[3] = vreinterpretq_f32_f64(vzip2q_f64(ab, cd));
-}
 static inline vn vn_zero(void) { return vdupq_n_u32(0); }
-static inline vn vn_set1(uint32_t n) { return vdupq_n_u32(n); }
 static inline vn vn_load(const uint32_t *p) { return vld1q_u32(p); }
-static inline vn vn_sub(vn a, vn b) { return a - b; }
-static inline vn vn_select(vw m, vn a, vn b) { return vbslq_u32(m, a, b); }
-static inline vn vn_power_of_two(vf k) { return vshlq_u32(vdupq_n_u32(1), vcvtnq_s32_f32(k)); }
-static inline vn vn_or_lt(vn n, vn m, vf a, vf b) { return n | (m & vcltq_f32(a, b)); }
-static inline uint32_t vn_beyond_bits(vn n, vn m) {
-    const uint32x4_t beyond = vbicq_u32(n, m);
-    return vn_mask_bits(vtstq_u32(beyond, beyond));
-}
 static inline void vn_store(uint32_t *p, vn n) { vst1q_u32(p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {
     const uint32x4_t n = vld1q_u32(p);

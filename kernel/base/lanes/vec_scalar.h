@@ -11,23 +11,16 @@
  *                            vd_lookup(table, size, k): table[k] for lanes of whole numbers k < size (< the table's
  *                            length in lanes whose result is not used); the table is a whole number of vectors long
  *                            vd_gather(table, k): table[k[l]] for lane l
- *                            vd_gather_four(table, k, to): to[m] is table[k[l]][m] for lane l; aligned to 32 bytes
  *                            vd_compress(p, bits, a): the lanes given by bits side by side at p, which has room for all
  *                            vd_replace(a, lane, x): a with x in one lane
  *                            vd_compress_places(p, bits, first): first + l for them; returns how many
- *                            vd_copy_numbers(p, from): numbers, one for each lane; any address
- *                            vd_choose(table, size, k): as vd_gather; size as in vd_lookup
  *   vm   a mask of vd lanes  & | vm_not vm_bits (bit l = lane l)
- *   vf   VF_LANES floats     + - * / vf_set1 vf_load vf_storeu vf_sqrt vf_min vf_max vf_abs
+ *   vf   VF_LANES floats     + - * / vf_set1 vf_load vf_storeu vf_sqrt vf_min vf_max
  *                            vf_lt (mask) vf_lt_bits (bit l = lane l) vf_select(mask, if set, if clear)
  *                            vf_compress(p, bits, a), vf_compress_places(p, bits, first): as those of vd
- *                            vf_gather_four(table, k, to): as vd_gather_four; aligned to 16 bytes
  *   vw   a mask of vf lanes  & |
- *   vn   VF_LANES numbers    vn_zero vn_set1 vn_load vn_store vn_sub vn_select(mask, if set, if clear)
- *                            vn_power_of_two(k): 2 to the power of the float k, rounded to a whole number 0 to 31
+ *   vn   VF_LANES numbers    vn_zero vn_load vn_store
  *                            vn_count_lt(n, a, b): n, and one more where a < b
- *                            vn_or_lt(n, m, a, b): n, and the bits of m where a < b
- *                            vn_beyond_bits(n, m): the lanes where n has bits that m has not
  *                            vn_compress(p, bits, from): those of the numbers at `from`; returns how many
  *                            vn_some_bits(p): which of those at p, any address, are not 0
  *                            & | ~
@@ -57,9 +50,6 @@ typedef uint32_t vn;
 static inline vd vd_set1(double a) { return a; }
 static inline vd vd_load(const double *p) { return *p; }
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) { return (void)size, table[(uint32_t)k]; }
-static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4]) {
-    for (int m = 0; m < 4; m++) to[m] = table[*k][m];
-}
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
     (void)bits, *p = a; /* there is room, and no branch */
 }
@@ -69,8 +59,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
     return bits;
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) { return table[*k]; }
-static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { *p = *from; }
-static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) { return (void)size, table[*k]; }
 static inline vd vd_loadu(const double *p) { return *p; }
 static inline void vd_store(double *p, vd a) { *p = a; }
 static inline void vd_storeu(double *p, vd a) { *p = a; }
@@ -94,26 +82,11 @@ static inline void vf_storeu(float *p, vf a) { *p = a; }
 static inline vf vf_sqrt(vf a) { return (float)fibrad_sqrt(a); } /* rounded twice, and yet right (Figueroa 1995) */
 static inline vf vf_min(vf a, vf b) { return a < b ? a : b; }
 static inline vf vf_max(vf a, vf b) { return a > b ? a : b; }
-static inline vf vf_abs(vf a) { return __builtin_fabsf(a); }
 static inline vw vf_lt(vf a, vf b) { return a < b; }
 static inline vf vf_select(vw m, vf a, vf b) { return m ? a : b; }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return a < b; }
-static inline void vf_gather_four(float (*table)[4], const uint32_t *k, vf to[4]) {
-    for (int m = 0; m < 4; m++) to[m] = table[*k][m];
-}
 static inline vn vn_zero(void) { return 0; }
-static inline vn vn_set1(uint32_t n) { return n; }
 static inline vn vn_load(const uint32_t *p) { return *p; }
-static inline vn vn_sub(vn a, vn b) { return a - b; }
-static inline vn vn_select(vw m, vn a, vn b) { return m ? a : b; }
-static inline vn vn_power_of_two(vf k) {
-    uint32_t bits;
-    k += 0x1.8p23f;
-    fibrad_copy(&bits, &k, sizeof bits);
-    return 1u << (bits & 31);
-}
-static inline vn vn_or_lt(vn n, vn m, vf a, vf b) { return a < b ? n | m : n; }
-static inline uint32_t vn_beyond_bits(vn n, vn m) { return (n & ~m) != 0; }
 static inline void vn_store(uint32_t *p, vn n) { *p = n; }
 static inline uint32_t vn_some_bits(const uint32_t *p) { return *p != 0; }
 static inline vn vn_count_lt(vn n, vf a, vf b) { return n + (a < b); }

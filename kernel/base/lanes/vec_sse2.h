@@ -39,16 +39,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
     return (bits & 1) + (bits >> 1);
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) { return _mm_set_pd(table[k[1]], table[k[0]]); }
-static inline void vd_gather_four(double (*table)[4], const uint32_t *k, vd to[4]) {
-    for (int m = 0; m < 4; m += 2) {
-        __m128d a = _mm_load_pd(table[k[0]] + m), b = _mm_load_pd(table[k[1]] + m);
-        to[m] = _mm_unpacklo_pd(a, b), to[m + 1] = _mm_unpackhi_pd(a, b);
-    }
-}
-static inline void vd_copy_numbers(uint32_t *p, const uint32_t *from) { fibrad_copy(p, from, VD_LANES * sizeof *p); }
-static inline vd vd_choose(const double *table, uint32_t size, const uint32_t *k) {
-    return (void)size, vd_gather(table, k);
-}
 static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
 static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
 static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
@@ -77,32 +67,18 @@ static inline void vf_storeu(float *p, vf a) { _mm_storeu_ps(p, a); }
 static inline vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
 static inline vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
 static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
-static inline vf vf_abs(vf a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
 static inline vw vf_lt(vf a, vf b) { return _mm_castps_si128(_mm_cmplt_ps(a, b)); }
 static inline vf vf_select(vw m, vf a, vf b) {
     __m128 set = _mm_castsi128_ps(m);
     return _mm_or_ps(_mm_and_ps(set, a), _mm_andnot_ps(set, b));
 }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm_movemask_ps(_mm_cmplt_ps(a, b)); }
-static inline void vf_gather_four(float (*table)[4], const uint32_t *k, vf to[4]) {
-    for (int m = 0; m < 4; m++) to[m] = _mm_load_ps(table[k[m]]);
-    _MM_TRANSPOSE4_PS(to[0], to[1], to[2], to[3]);
-}
 static inline vn vn_zero(void) { return _mm_setzero_si128(); }
-static inline vn vn_set1(uint32_t n) { return _mm_set1_epi32((int)n); }
 static inline vn vn_load(const uint32_t *p) { return _mm_load_si128((const __m128i *)(const void *)p); }
-static inline vn vn_sub(vn a, vn b) { return _mm_sub_epi32(a, b); }
-static inline vn vn_select(vw m, vn a, vn b) { return _mm_or_si128(_mm_and_si128(m, a), _mm_andnot_si128(m, b)); }
 /* The exponent of a float is shifted into its place. 2^31 comes out right, too: it is what x86 gives for no number. */
 static inline vn vn_power_of_two(vf k) {
     __m128i exponent = _mm_add_epi32(_mm_cvtps_epi32(k), _mm_set1_epi32(127));
     return _mm_cvttps_epi32(_mm_castsi128_ps(_mm_slli_epi32(exponent, 23)));
-}
-static inline vn vn_or_lt(vn n, vn m, vf a, vf b) {
-    return _mm_or_si128(n, _mm_and_si128(m, _mm_castps_si128(_mm_cmplt_ps(a, b))));
-}
-static inline uint32_t vn_beyond_bits(vn n, vn m) {
-    return ~(uint32_t)_mm_movemask_ps(_mm_castsi128_ps(_mm_cmpeq_epi32(_mm_and_si128(n, m), n))) & 15;
 }
 static inline void vn_store(uint32_t *p, vn n) { _mm_store_si128((__m128i *)(void *)p, n); }
 static inline uint32_t vn_some_bits(const uint32_t *p) {

@@ -1,6 +1,6 @@
 /* cast_lanes.h - rows by rays, one version per instruction set. SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_RAY_CAST_LANES_H
-#define FIBRAD_RAY_CAST_LANES_H
+#ifndef FIBRAD_ROW_CAST_LANES_H
+#define FIBRAD_ROW_CAST_LANES_H
 
 #include "base/dispatch.h"
 #include "row/row.h"

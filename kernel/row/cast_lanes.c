@@ -8,7 +8,7 @@
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
 #include "base/random.h"
-#include "ray/cast_lanes.h"
+#include "row/cast_lanes.h"
 #include "scene/walls.h"
 #include "near/near_lanes.h"
 

@@ -1,6 +1,6 @@
 /* cast.c - checks a ray rule and hands it to the version for the scene's instruction set. SPDX-License-Identifier: MIT
  */
-#include "ray/cast_lanes.h"
+#include "row/cast_lanes.h"
 
 static int cast_compute(const fibrad_scene *scene, fibrad_workspace *space, uint32_t i, const void *task,
                         fibrad_row *row) {
