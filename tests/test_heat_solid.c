@@ -49,8 +49,8 @@ TEST(pebbles_touch_at_a_spot) {
     ck_assert_double_gt(entry(q, 0, 6), 1030);
 }
 
-/* A sphere that conducts, between two black plates. Flows are those of a series in rings with 384 times as many points
- * (outside of the program). Those of spheres of one temperature would be 300 W. */
+/* A sphere that conducts, between two black plates. The flows 198.6 and 150.4 W are those of an independent program.
+ * Spheres of one temperature would carry 300 W. The default of 168 directions is left out: it errs by 1.5 % at zmax. */
 TEST(flows_at_plates) {
     static const char *const settings[][2] = {{"300", "96"}, {"2000", "96"}, {"1000", "384"}};
     const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0.5,0.5\n"), *flows = in_folder("flows.csv");
