@@ -124,7 +124,8 @@ typedef enum fibrad_status {
     FIBRAD_E_BACK = -14,        /* A ray met a side that belongs to no wall. The triangle is written to the output. */
     FIBRAD_E_SUM = -15,         /* A row's sum is not 1 within 1e-9. This is a fault of the library. */
     FIBRAD_E_ENDLESS = -16,     /* The walls form a tube or a corner without end. Add a wall or an opening. */
-    FIBRAD_E_FILE = -17         /* A file cannot be made, written or renamed. Only functions of the host return this. */
+    FIBRAD_E_FILE = -17,        /* A file cannot be made, written or renamed. Only functions of the host return this. */
+    FIBRAD_E_UNSETTLED = -18    /* A search for radiosities and temperatures has not ended after all its sweeps. */
 } fibrad_status;
 
 /* The meaning of a status, which may be any number, as one English phrase. Never NULL. */

@@ -155,7 +155,7 @@ typedef struct fibrad_heat_sources {
     double surroundings;            /* K, 0 to FIBRAD_TEMPERATURE_MAX, of the black surroundings */
     double sigma;                   /* of E = sigma T^4, FIBRAD_SIGMA_MIN to _MAX */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
-    uint32_t sweeps_max;            /* sweeps after which to stop; 0: 1000 */
+    uint32_t sweeps_max;            /* sweeps after which to give up, FIBRAD_E_UNSETTLED; 0: 1000 */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
@@ -198,11 +198,12 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources);
 int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
 
 /* Ends a sweep.
- *   Output   solved: 1 if the residual is below the tolerance, or after about sweeps_max sweeps; else 0
+ *   Output   solved: 1 if the residual is below the tolerance; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
  *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and there are contacts or the powers do not
  *            add up to zero
+ *            _UNSETTLED: the search has not ended after sweeps_max sweeps; there is no solution
  *   Level    If all temperatures are unknown and nothing escapes, any level of temperatures would do. The mean
  *            emission, weighted by emissivity and area, is then that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);

@@ -150,7 +150,7 @@ TEST(laws_that_fail_write_nothing) {
         fibrad_heat_result result = {.power = c.power, .temperature = c.found, .surroundings_power = 77};
         assert_ok(made_with(&c.made, NULL, &c.spheres, &coarse, NULL));
         ck_assert_int_eq(made_settle(c.made, &c.sources, laws[k], &calls, emissivity, NULL, &result),
-                         k == 0 ? FIBRAD_E_UNSOLVABLE : FIBRAD_E_ARGUMENT);
+                         k == 0 ? FIBRAD_E_UNSETTLED : FIBRAD_E_ARGUMENT);
         ck_assert_mem_eq(emissivity, before, sizeof before);
         ck_assert_mem_eq(c.power, marked, sizeof marked);
         ck_assert_mem_eq(c.found, marked, sizeof marked);

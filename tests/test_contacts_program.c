@@ -181,6 +181,84 @@ LOOP_TEST(files_at_fault, 10) {
                formatted("%s%s: %s", file, cases[_i].line ? formatted(":%d", cases[_i].line) : "", cases[_i].reason));
 }
 
+/* A sphere of emissivity 0 and a given temperature holds another one. Its power is that of a sphere of emissivity 1e-9:
+ * the balance of radiation to 300 K, conduction and 1 W. Sphere 1 sees sphere 0 and sends back a little of its light.
+ */
+TEST(what_reflects_all_holds_a_sphere) {
+    const char *q = in_folder("q.csv"), *pair = contacts("i,j,W/K\n0,1,0.05\n");
+    const double area = 4 * PI * 1e-4, sigma = 5.670374419e-8;
+    for (int nearly = 0; nearly < 2; ++nearly) {
+        const char *hold =
+            write_file("hold.csv",
+                       formatted("id,x,y,z,r,e,T\n0,0,0,0,0.01,0.8,\n1,0.05,0,0,0.01,%s,600\n", nearly ? "1e-9" : "0"));
+        SUCCEED("heat", hold, "--emissivity", "e", "--temperature", "T", "--power", "1", "--ambient", "300",
+                "--contacts", pair, "--length-unit", "m", "-o", q);
+        const double t = column(q, 0, 1), lost = .8 * area * sigma * (pow(t, 4) - pow(300, 4));
+        assert_near(t, 535.5, 1e-4);
+        assert_near(1 + .05 * (600 - t), lost, 2e-3);
+        ck_assert_double_lt(value_of("sweeps"), 20);
+    }
+    const char *above = write_file("above.csv", "x,y,z,r\n0,0,0,0.01\n");
+    SUCCEED("heat", above, "--emissivity", "0.8", "--power", "1", "--ambient", "300", "--wall",
+            "zmin:at=-0.02:temperature=600:emissivity=0", "--contacts", contacts("i,j,W/K\n0,zmin,0.05\n"),
+            "--length-unit", "m", "-o", q);
+    assert_near(column(q, 0, 1), 536.56, 5e-4);
+}
+
+/* Eight spheres in a row, of which only the last one has a temperature, without emission or with some of it. */
+TEST(the_far_end_of_a_chain_holds) {
+    const char *q = in_folder("q.csv");
+    char pairs[300] = "i,j,W/K\n", *to = pairs + strlen(pairs);
+    for (int i = 0; i < 7; ++i) to += sprintf(to, "%d,%d,%g\n", i, i + 1, .01 * (i + 1));
+    for (int dark = 0; dark < 2; ++dark) {
+        char text[600] = "id,x,y,z,r,e,T,P\n", *at = text + strlen(text);
+        for (int i = 0; i < 8; ++i)
+            at += sprintf(at, "%d,%g,0,0,.01,%g,%s,%s\n", i, .025 * i, dark || i == 7 ? 0 : i % 3 * .4,
+                          i == 7 ? "1500" : "", i == 7 ? "" : "0.5");
+        SUCCEED("heat", write_file("chain.csv", text), "--length-unit", "m", "--emissivity", "e", "--temperature", "T",
+                "--power", "P", "--ambient", "300", "--contacts", contacts(pairs), "-o", q);
+        ck_assert_double_lt(value_of("sweeps"), 40);
+        for (int i = 0; i < 7 && dark; ++i)
+            assert_near(column(q, i, 1) - column(q, i + 1, 1), .5 * (i + 1) / (.01 * (i + 1)), 1e-9);
+        ck_assert_double_gt(column(q, 6, 1), dark ? 1549 : 1000);
+    }
+}
+
+/* The third name of the header is a unit. */
+TEST(conductances_have_units) {
+    static const char *const unit[] = {"W/K", "mW/K", "kW/K"}, *const wrong[] = {"K/W", "W/m/K", "H", "W"};
+    static const double scale[] = {1, 1e-3, 1e3};
+    for (int k = 0; k < 3; ++k) {
+        SUCCEED("heat", ROW, "--emissivity", "0.8", "--contacts",
+                contacts(formatted("i,j,%s\n0,zmin,5\n0,1,5\n", unit[k])));
+        assert_near(value_of("conductance_mean_W_K"), 5 * scale[k], 1e-9);
+    }
+    for (int k = 0; k < 4; ++k) {
+        FAIL_WITH(3, "heat", ROW, "--emissivity", "0.8", "--contacts",
+                  contacts(formatted("i,j,%s\n0,zmin,5\n", wrong[k])));
+        assert_has(said, formatted("contacts.csv:1: the third name of the header is '%s'", wrong[k]));
+    }
+}
+
+/* An insulated wall in contact has the power 0, and a temperature that is found, in time as well. */
+TEST(insulated_walls_in_contact) {
+    const char *file = contacts("i,j,W/K\n0,zmin,0.5\n2,zmax,0.5\n"), *of_wall[] = {"zmin:insulated", "zmin:power=0"};
+    double found[2], in_time = 0;
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", row(), "--length-unit", "m", "--power", "P", "--emissivity", "0.8", "--periodic", ".04,.04,0",
+                "--wall", of_wall[k], "--wall", "zmax:at=.0602:temperature=500", "--contacts", file);
+        found[k] = value_of("wall_zmin_K");
+        if (k == 0) assert_has(said, "the insulated wall zmin is in contact, so it has one temperature");
+    }
+    ck_assert_double_eq(found[0], found[1]);
+    SUCCEED("heat", row(), "--length-unit", "m", "--power", "P", "--emissivity", "0.8", "--periodic", ".04,.04,0",
+            "--wall", of_wall[0], "--wall", "zmax:at=.0602:temperature=500", "--contacts", file, "--temperature", "500",
+            "--until", "20000", "--times", "100", "--heat-capacity", "800", "--density", "2500", "-o",
+            in_folder("t.csv"));
+    in_time = value_of("wall_zmin_K");
+    assert_near(in_time, found[0], 2e-3);
+}
+
 /* Options that need others, or cannot be combined. */
 TEST(options_at_fault) {
     const char *file = contacts("i,j,W/K\nzmin,1,1\n");
@@ -197,7 +275,8 @@ TEST(options_at_fault) {
     assert_has(said, "the file names no unit of length, which contacts need");
     FAIL_WITH(2, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0.8",
               "--wall", "zmin:insulated", "--contacts", file);
-    assert_has(said, "wall zmin is in contact and needs one temperature or a power");
+    assert_has(said,
+               "zmin is in contact and needs one temperature, or a power: --wall zmin:power=0 if it is insulated");
     FAIL_WITH(3, "heat", row(), "--length-unit", "m", "--ambient", "300", "--power", "P", "--emissivity", "0",
               "--contacts", contacts("i,j,W/K\n0,1,1\n"));
     assert_has(said, "row.csv:2: sphere 0 has emissivity 0, and nothing that it touches radiates or has a temperature");

@@ -345,6 +345,45 @@ TEST(nearly_black_is_as_black) {
     ck_assert_double_le(difference_of(nearly, black, 40), 1e-7);
 }
 
+/* A sphere that conducts well and is black, or nearly so, beside one that conducts badly: powers are those for a sphere
+ * of one temperature, and the search takes few sweeps. */
+LOOP_TEST(good_conductors_beside_bad_ones, 60) {
+    const double nearly[] = {0, 0, 1e-8}, apart = (_i % 5) * .02 * (1 + .37 * (_i / 5)), k = .0529 * (1 + _i % 7);
+    OWNED_PROBLEM p = problem_of(BED({0, 0, 0, .5}, {0, 0, .8 + 1e-4 + apart, .3}), .9, .6);
+    double isothermal[2];
+    p.temperature[1] = 1.1, p.emissivity[1] = 1 - nearly[_i % 3], p.sources.surroundings = .3;
+    if (_i % 4 == 0) p.emissivity[0] = 1 - 1e-8;
+    p.sources.sweeps_max = 60;
+    conduct(&p, 1, 1);
+    conductivity[0] = k, conductivity[1] = INFINITY;
+    trace_and_solve(&p);
+    memcpy(isothermal, p.result.power, sizeof isothermal);
+    for (double high = 1e5; high < 1e12; high *= 30) {
+        conductivity[1] = high;
+        solve(&p);
+        for (int i = 0; i < 2; i++) assert_near(p.result.power[i], isothermal[i], 1e-4);
+    }
+}
+
+/* The end of a search that has not converged. */
+TEST(a_search_that_ends_too_early) {
+    OWNED_PROBLEM p = problem_of(BED({0, 0, 0, .5}, {0, 0, 1.1, .5}), .9, .6);
+    int solved = 0, status = FIBRAD_OK, sweeps = 0;
+    p.temperature[1] = 1.1, p.sources.surroundings = .3;
+    trace(&p);
+    p.sources.sweeps_max = 3;
+    assert_ok(fibrad_heat_begin(p.heat, &p.sources));
+    for (; status == FIBRAD_OK && !solved; sweeps++) {
+        heat_sweep(p.heat, false);
+        status = fibrad_heat_step(p.heat, &solved);
+    }
+    ck_assert_int_eq(status, FIBRAD_E_UNSETTLED);
+    ck_assert(!solved && sweeps == 4);
+    ck_assert_int_eq(fibrad_heat_read(p.heat, &p.result), FIBRAD_E_STATE);
+    p.sources.sweeps_max = 0;
+    solve(&p);
+}
+
 TEST(the_order_of_the_work_changes_no_bit) {
     OWNED_PROBLEM p = mixed_bed(1), q = mixed_bed(1);
     q.backwards = true, q.isa = FIBRAD_ISA_SCALAR;

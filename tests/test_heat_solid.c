@@ -49,6 +49,22 @@ TEST(pebbles_touch_at_a_spot) {
     ck_assert_double_gt(entry(q, 0, 6), 1030);
 }
 
+/* A sphere that conducts, between two black plates. The flows 198.6 and 150.4 W are those of an independent program.
+ * Spheres of one temperature would carry 300 W. The default of 168 directions is left out: it errs by 1.5 % at zmax. */
+TEST(flows_at_plates) {
+    static const char *const settings[][2] = {{"300", "96"}, {"2000", "96"}, {"1000", "384"}};
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0.5,0.5\n"), *flows = in_folder("flows.csv");
+    const char *contacts = write_file("contacts.csv", "i,j,W/K\n0,zmin,6\n0,zmax,6\n");
+    for (int k = 0; k < 3; ++k) {
+        SUCCEED("heat", file, "--length-unit", "m", "--emissivity", "0.8", "--power", "0", "--ambient", "900", "--wall",
+                "zmin:at=0:temperature=900", "--wall", "zmax:at=1:temperature=1000", "--solid-conductivity", "100",
+                "--contacts", contacts, "--contact-flows", flows, "--directions", settings[k][0], "--patches",
+                settings[k][1]);
+        assert_near(entry(flows, 0, 3), 198.6, .01);
+        assert_near(entry(flows, 1, 3), -150.4, .01);
+    }
+}
+
 /* All files have all columns. Walls and surroundings have no values in them. */
 TEST(files_have_insides) {
     const char *file = spheres(), *q = in_folder("q.csv"), *json = in_folder("q.json"), *vtp = in_folder("q.vtp");
@@ -113,8 +129,22 @@ TEST(insides_lag_in_time) {
     }
 }
 
+/* Infinity and a blank in a column stand for one temperature, which large numbers come near. The power is that of 4000
+ * directions and 384 patches. */
+TEST(blanks_conduct_well) {
+    static const char *const k[] = {"1e7", "1e9", "1e10", "1e12", "inf", "", "nan"};
+    const char *q = in_folder("q.csv");
+    for (size_t i = 0; i < sizeof k / sizeof *k; ++i) {
+        const char *text = formatted("x,y,z,r,T,k,e\n0,0,0,.5,900,3,.6\n0,0,.803,.3,1100,%s,1\n", k[i]);
+        SUCCEED("heat", write_file("two.csv", text), "--length-unit", "m", "--emissivity", "e", "--temperature", "T",
+                "--ambient", "300", "--solid-conductivity", "k", "-o", q);
+        assert_near(entry(q, 0, 2), -62633, 1e-3);
+        ck_assert_double_lt(value_of("sweeps"), 30);
+    }
+}
+
 TEST(what_cannot_be) {
-    const char *file = spheres(), *hole = write_file("hole.csv", "x,y,z,radius,k\n0,0,0,1,nan\n");
+    const char *file = spheres(), *hole = write_file("hole.csv", "x,y,z,radius,k\n0,0,0,1,-inf\n");
     const struct {
         const char *value, *reason;
         int status;
@@ -123,7 +153,6 @@ TEST(what_cannot_be) {
         {"-3", "--solid-conductivity", 2},
         {"nan", "no column nan", 3},
         {"lambda", "lambda", 3},
-        {"P", "P is not a number", 3},
         {"x", "conductivity of the solid", 3},
         {"1:5", "type", 3},
         {table("wrong_k.csv", "300,5\n400,-1\n"), "wrong_k.csv:2: the solid-conductivity is -1; it must be within", 3},

@@ -125,7 +125,8 @@ struct heat_shown {
     const struct bed *bed;
     const struct walls *walls;
     const double *temperature, *power, *wall_temperature;
-    const double *absorbed; /* NULL: there is no light */
+    const double *absorbed;  /* NULL: there is no light */
+    const double *conducted; /* NULL: there are no contacts */
     struct plot_plane plane;
 };
 
@@ -133,6 +134,7 @@ static int draw_heat(const struct output *output, const void *heat_shown) {
     const struct heat_shown *shown = heat_shown;
     const fibrad_heat_result result = {.temperature = (double *)shown->temperature,
                                        .power = (double *)shown->power,
+                                       .conducted = (double *)shown->conducted,
                                        .wall_temperature = (double *)shown->wall_temperature};
     const fibrad_light_result light = {.absorbed = (double *)shown->absorbed};
     const struct contents what = {
@@ -158,6 +160,13 @@ TEST(slices_of_heat) {
     bed.metres = 1e-3; /* the same lengths, from a file in millimetres */
     svg = drawn(draw_heat, &what);
     assert_has(svg, "x [\302\265m]");
+    free(svg);
+
+    const double conducted[] = {.5, -2.25, .25};
+    what.conducted = conducted;
+    svg = drawn(draw_heat, &what);
+    assert_texts_inside(svg, 700);
+    assert_has(svg, "lose 2.5 W: 1 W by radiation, 1.5 W by conduction");
     free(svg);
 
     /* there are no walls, and nothing flows */

@@ -12,10 +12,11 @@ TEST(numbers_and_texts) {
     static const int codes[] = {FIBRAD_E_ARGUMENT,    FIBRAD_E_SIZE,   FIBRAD_E_CAPACITY,  FIBRAD_E_TABLE,
                                 FIBRAD_E_GEOMETRY,    FIBRAD_E_WORK,   FIBRAD_E_STATE,     FIBRAD_E_ISA,
                                 FIBRAD_E_UNSUPPORTED, FIBRAD_E_MEMORY, FIBRAD_E_CANCELLED, FIBRAD_E_UNSOLVABLE,
-                                FIBRAD_E_BACK,        FIBRAD_E_SUM,    FIBRAD_E_ENDLESS,   FIBRAD_E_FILE};
+                                FIBRAD_E_BACK,        FIBRAD_E_SUM,    FIBRAD_E_ENDLESS,   FIBRAD_E_FILE,
+                                FIBRAD_E_UNSETTLED};
     static const int others[] = {1000, -100, -3, -2147483647 - 1, 2147483647};
     ck_assert_int_eq(FIBRAD_OK, 0);
-    for (int a = 0; a < 16; a++) {
+    for (int a = 0; a < 17; a++) {
         const char *text = fibrad_status_text(codes[a]);
         ck_assert_int_eq(codes[a], a < 2 ? -1 - a : -2 - a); /* -3 is no longer used */
         ck_assert(strlen(text) > 0 && text[strlen(text) - 1] != '.');

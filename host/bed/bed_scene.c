@@ -59,6 +59,7 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
     if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);
     if (status == FIBRAD_E_GEOMETRY)
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");
+    if (status == FIBRAD_E_UNSETTLED) return message_at(STATUS_INPUT, file, 0, "%s", fibrad_status_text(status));
     if (!known)
         return message_at(STATUS_INPUT, file, 0, "this bed and box cannot be computed: %s", fibrad_status_text(status));
     const bool place = fault->why == FIBRAD_WHY_PLACE;

@@ -79,8 +79,7 @@ static int find_contacts(struct contact_state *state, struct bed_options *bed_op
         state->rule.gas_reach = o->gap > 0 ? o->gap : FIBRAD_GAS_REACH_DEFAULT;
         state->rule.gas_jump = o->jump / bed->metres, state->rule.gas_least = FIBRAD_GAS_LEAST_DEFAULT / bed->metres;
     }
-    int status = quantity_values(state->of_solid, bed, bed_options->name, "conductivity of the solid", 0,
-                                 SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, &state->solid);
+    int status = solid_values(bed_options, bed, state->of_solid, &state->solid);
     if (status) return status;
     status = fibrad_bed_contacts(made, &state->rule, &state->list);
     return status ? bed_options_status(bed_options, bed, status, &(fibrad_fault){0}) : STATUS_OK;
@@ -241,8 +240,10 @@ int contacts_refuse(const struct contact_state *state, const struct bed_options 
                     const struct walls *walls, int status, const fibrad_fault *fault) {
     if (!state->options || !status) return STATUS_OK;
     if (fault->why == FIBRAD_WHY_TOUCHED)
-        return message(STATUS_USAGE, "wall %s is in contact and needs one temperature or a power",
-                       wall_name(walls, fault->wall - 1));
+        return message(
+            STATUS_USAGE,
+            "wall %s is in contact and needs one temperature, or a power: --wall %s:power=0 if it is insulated",
+            wall_name(walls, fault->wall - 1), wall_name(walls, fault->wall - 1));
     if (fault->why == FIBRAD_WHY_REFLECTS && fault->first < bed->n)
         return message_at(STATUS_INPUT, options->name, bed->line[fault->first],
                           "sphere %lld has emissivity 0 and no contact, and cannot give off a power",

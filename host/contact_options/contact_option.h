@@ -44,7 +44,8 @@ enum { CONTACT_FILES_MAX = 8 };
 
 /* A paragraph of --help. */
 #define CONTACTS_MORE                                                                                                  \
-    "--contacts FILE: a header i,j,W/K and a line for each contact. i and j are names of spheres or of walls.\n"       \
+    "--contacts FILE: a header i,j,W/K (or mW/K, kW/K) and a line for each contact. i and j are names of spheres or "  \
+    "of walls.\n"                                                                                                      \
     "A * in FILE stands for the number of the frame. Several lines of a pair add up. With lens or hertz,\n"            \
     "spheres and walls that overlap touch at a spot of radius a: the circle in which they cut each other, or\n"        \
     "Hertz's spot, which is 1.41 times smaller. It conducts 2 k a, or 4 k a to a wall. A wall in contact has one\n"    \

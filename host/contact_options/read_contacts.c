@@ -8,6 +8,7 @@
 #include "cli/targets.h"
 #include "contact_options/contact_option.h"
 #include "text/read_lines.h"
+#include "text/unit.h"
 
 int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {
     const char *star = strchr(pattern, '*');
@@ -47,7 +48,7 @@ int contacts_resize(struct contact_lines *to, size_t n) {
 }
 
 static int take_contact(const struct lines *lines, const struct fields *fields, const struct bed *bed,
-                        const struct walls *walls, struct contact_lines *to) {
+                        const struct walls *walls, double unit, struct contact_lines *to) {
     if (fields->n != 3) return lines_fault(lines, "%zu columns instead of i,j,W/K", fields->n);
     const uint32_t k = to->n;
     if (k > UINT32_MAX / 2) return message(STATUS_INPUT, "--contacts: too many contacts");
@@ -56,6 +57,7 @@ static int take_contact(const struct lines *lines, const struct fields *fields, 
     if (!status) status = name_of_end(lines, fields->at[1], bed, walls, &to->second[k]);
     if (!status) status = lines_number(lines, "conductance", fields->at[2], &to->conductance[k]);
     if (status) return status;
+    to->conductance[k] *= unit;
     const bool periodic = bed->period[0] > 0 || bed->period[1] > 0 || bed->period[2] > 0;
     if (!(to->conductance[k] >= 0 && to->conductance[k] <= CONDUCTANCE_MOST))
         return lines_fault(lines, "the conductance is %g; it must be within 0 and %g", to->conductance[k],
@@ -66,14 +68,21 @@ static int take_contact(const struct lines *lines, const struct fields *fields, 
     return STATUS_OK;
 }
 
-static bool is_header(const struct fields *fields) {
-    return fields->n == 3 && strcmp(fields->at[0], "i") == 0 && strcmp(fields->at[1], "j") == 0;
+/* Takes the header i,j,UNIT. unit: of the conductances [W/K]. */
+static int take_header(const struct lines *lines, const struct fields *fields, double *unit) {
+    if (fields->n != 3 || strcmp(fields->at[0], "i") != 0 || strcmp(fields->at[1], "j") != 0)
+        return lines_fault(lines, "the header is not i,j,W/K");
+    if (unit_factor(fields->at[2], "W/K", unit)) return STATUS_OK;
+    return lines_fault(lines,
+                       "the third name of the header is '%.40s'; it must be a unit of conductance: W/K, mW/K or kW/K",
+                       fields->at[2]);
 }
 
 int contacts_read(const char *pattern, const struct bed *bed, const struct walls *walls, struct contact_lines *to) {
     struct lines lines;
     struct fields fields = {0};
     char path[CONTACT_PATH];
+    double unit = 1;
     int status = contact_path(pattern, bed->frame, path);
     if (status) return status;
     status = lines_open(&lines, path);
@@ -84,10 +93,8 @@ int contacts_read(const char *pattern, const struct bed *bed, const struct walls
         if (status || !more) break;
         if (lines_blank(&lines) || lines_comment(&lines)) continue;
         status = fields_split(&fields, lines.text, ",; \t\r");
-        if (!status && !begun && !is_header(&fields))
-            status = lines_fault(&lines, "the header is not i,j,W/K");
-        else if (!status && begun)
-            status = take_contact(&lines, &fields, bed, walls, to);
+        if (!status)
+            status = begun ? take_contact(&lines, &fields, bed, walls, unit, to) : take_header(&lines, &fields, &unit);
         begun = true;
     }
     if (!status && !begun) status = message_at(STATUS_INPUT, lines.name, 0, "there is no header i,j,W/K");

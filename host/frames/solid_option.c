@@ -1,6 +1,7 @@
 /* solid_option.c - the conductivity of the solid that spheres are made of. SPDX-License-Identifier: MIT */
 #include "frames/solid_option.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -8,14 +9,20 @@
 const struct curve_axes solid_axes = {CURVE_AXIS_KELVINS, {"k lambda conductivity", SOLID_UNIT}};
 
 int solid_option(const char *text, void *solid) {
-    return table_option("--solid-conductivity", text, &solid_axes, SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX,
-                        solid);
+    struct quantity *quantity = solid;
+    const int status = table_option("--solid-conductivity", text, &solid_axes, SOLID_CONDUCTIVITY_MIN,
+                                    SOLID_CONDUCTIVITY_MAX, quantity);
+    quantity->some = !quantity->types;
+    return status;
 }
 
 int solid_values(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
                  double **conductivity) {
-    return quantity_values(solid, bed, options->name, "conductivity of the solid", 0, SOLID_CONDUCTIVITY_MIN,
-                           SOLID_CONDUCTIVITY_MAX, conductivity);
+    const int status = quantity_values(solid, bed, options->name, "conductivity of the solid", 0,
+                                       SOLID_CONDUCTIVITY_MIN, SOLID_CONDUCTIVITY_MAX, conductivity);
+    for (uint32_t i = 0; i < bed->n && !status; ++i)
+        if (isnan((*conductivity)[i])) (*conductivity)[i] = INFINITY;
+    return status;
 }
 
 int solid_relative(struct bed_options *options, const struct bed *bed, const struct quantity *solid,

@@ -11,9 +11,9 @@
 #define SOLID_UNIT  "W/(m K)"
 #define SOLID_NEEDS "--solid-conductivity needs" /* for bed_options_metres */
 
-/* Bounds of k_s, in that unit. */
+/* Bounds of k_s, in that unit. Infinite: one temperature. */
 #define SOLID_CONDUCTIVITY_MIN 1e-6
-#define SOLID_CONDUCTIVITY_MAX 1e12
+#define SOLID_CONDUCTIVITY_MAX INFINITY
 
 /* Tables of conductivities over temperatures. */
 extern const struct curve_axes solid_axes;
@@ -22,13 +22,15 @@ extern const struct curve_axes solid_axes;
 #define OPTION_SOLID_CONDUCTIVITY(request, field)                                                                      \
     0, "solid-conductivity", "K",                                                                                      \
         "thermal conductivity of the solid [W/(m K)]; a number, or @TABLE of temperatures [K] and "                    \
-        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file [infinite]",                               \
+        "conductivities, or TYPE:K,TYPE:@TABLE,..., or a column of the file; inf or a blank there: one "               \
+        "temperature [infinite]",                                                                                      \
         TO_FUNCTION(solid_option, request, field)
 
 /* Takes the argument of --solid-conductivity into a quantity. Status as table_option. */
 int solid_option(const char *text, void *solid);
 
-/* Finds k_s of all spheres, *conductivity [n]. A table gives one of its values. Free *conductivity also after an error.
+/* Finds k_s of all spheres, *conductivity [n]. A table gives one of its values, a blank in a column
+ * infinity. Free *conductivity also after an error.
  * Status as quantity_values. */
 int solid_values(const struct bed_options *options, const struct bed *bed, const struct quantity *solid,
                  double **conductivity);

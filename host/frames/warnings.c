@@ -22,6 +22,8 @@ enum kind {
     GAS_TABLE,
     CLOSED_BED,
     WAVES,
+    JOINED_WALL,
+    HOT,
     OF_THE_LIBRARY /* and then a fibrad_warning_code */
 };
 
@@ -35,6 +37,7 @@ enum kind {
 #define CAPACITY_HIGH 3e4
 #define DENSITY_LOW   10.0 /* [kg/m3] */
 #define DENSITY_HIGH  1e5
+#define SOLIDS_MELT   4000.0 /* [K] hardly a solid is left */
 
 /* Prints a warning about a line of the file; 0: about no line. */
 #define WARN(line, ...) message_at(STATUS_OK, warned->file, line, "warning: " __VA_ARGS__)
@@ -126,6 +129,21 @@ void warn_made(struct warned *warned, const struct bed *bed, const struct walls 
         word_temperatures(warned, bed, walls, w);
         word_rows(warned, bed, w, facts.triangles > 0);
     }
+}
+
+void warn_joined(struct warned *warned, const char *wall) {
+    if (is_new(warned, JOINED_WALL))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: the insulated wall %s is in contact, so it has one temperature, as with %s:power=0", wall,
+                   wall);
+}
+
+void warn_hot(struct warned *warned, double hottest) {
+    if (hottest > SOLIDS_MELT && is_new(warned, HOT))
+        message_at(STATUS_OK, warned->file, 0,
+                   "warning: temperatures of up to %.0f K come out, at which no solid is left; are powers, light and "
+                   "units right?",
+                   hottest);
 }
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */

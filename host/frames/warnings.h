@@ -45,6 +45,12 @@ void warn_box(struct warned *warned, const struct walls *walls);
 /* Warns if the name of a column of temperatures in kelvins says degrees Celsius. */
 void warn_celsius(struct warned *warned, const char *column);
 
+/* Says that an insulated wall in contact has one temperature. */
+void warn_joined(struct warned *warned, const char *wall);
+
+/* Warns if the hottest temperature that was found [K] is above that of all solids. */
+void warn_hot(struct warned *warned, double hottest);
+
 /* Warns of a temperature of the surroundings in a closed bed. */
 void warn_closed(struct warned *warned);
 

@@ -89,6 +89,17 @@ static int read_values(struct heat *h, struct bed *bed) {
     return status ? status : bed_options_make(&h->options, bed, &opened, &h->made);
 }
 
+/* An insulated wall in contact has one temperature, and the power 0. */
+static void join_insulated(struct heat *h) {
+    const fibrad_heat_sources *s = &h->sources;
+    for (uint32_t c = 0; c < 2 * s->contacts; ++c) {
+        const uint32_t end = (c % 2 ? s->contact_second : s->contact_first)[c / 2], k = end - h->bed->n;
+        if (end < h->bed->n || !h->values.insulated[k] || wall_endless(&h->walls, h->bed, &h->walls.wall[k])) continue;
+        h->values.insulated[k] = 0, h->values.wall_temperature[k] = NAN, h->values.wall_power[k] = 0;
+        warn_joined(&h->options.warned, wall_name(&h->walls, k));
+    }
+}
+
 int heat_begin(struct heat *h, struct bed *bed) {
     fibrad_heat_sources *sources = &h->sources;
     memset(&h->bed, 0, sizeof *h - offsetof(struct heat, bed));
@@ -108,6 +119,7 @@ int heat_begin(struct heat *h, struct bed *bed) {
     status =
         contacts_begin(&h->touching, &h->contacts, &h->options, bed, h->made, &h->walls, &h->solid, 1 / unit, sources);
     contacts_result(&h->touching, &h->result);
+    if (!status) join_insulated(h);
     return status;
 }
 

@@ -111,6 +111,7 @@ int heat_solve(struct heat *h) {
     status = bed_options_status(&h->options, h->bed, status, &fault);
     if (status) return status;
     heat_find_temperatures(h);
+    warn_hot(&h->options.warned, h->figures.hottest);
     light_add(h);
     scale_result(h, square_metres);
     contacts_scale(&h->touching, h->bed->n, h->walls.count);

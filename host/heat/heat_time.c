@@ -226,15 +226,22 @@ static int show_triangles(struct time_run *m) {
     return status;
 }
 
+/* Computes the powers at m->now, and the temperatures of walls that have none given. shown: out, what was solved. */
+static int solve_state(struct time_run *m, fibrad_heat_sources *shown) {
+    struct heat *h = m->heat;
+    *shown = m->sources;
+    shown->temperature = m->span.temperature;
+    heat_follow(h, shown->temperature, m->wall, h->emissivity, NULL);
+    heat_excess_of(h, shown->temperature, m->wall, m->excess);
+    shown->power = NULL; /* a sphere has a temperature or a power, not both */
+    return fibrad_bed_solve(h->made, shown, NULL, &h->result);
+}
+
 /* Computes the powers at m->now and writes all outputs. */
 static int write_state(struct time_run *m) {
     struct heat *h = m->heat;
-    fibrad_heat_sources shown = m->sources;
-    shown.temperature = m->span.temperature;
-    heat_follow(h, shown.temperature, m->wall, h->emissivity, NULL);
-    heat_excess_of(h, shown.temperature, m->wall, m->excess);
-    shown.power = NULL; /* a sphere has a temperature or a power, not both */
-    int status = fibrad_bed_solve(h->made, &shown, NULL, &h->result);
+    fibrad_heat_sources shown;
+    int status = solve_state(m, &shown);
     if (!status) status = show_triangles(m);
     status = library_status(m, status);
     if (status) return status;
@@ -278,6 +285,12 @@ static int run_spans(struct time_run *m) {
     for (size_t k = 0; k < count && !status; ++k) {
         if (end[k].time > 0) status = advance(m, end[k].time);
         if (!status && end[k].output) status = write_state(m);
+    }
+    for (uint32_t k = 0; k < m->heat->walls.count && !status; ++k) {
+        fibrad_heat_sources shown;
+        if (!isnan(m->wall[k])) continue;
+        status = end[count - 1].output ? STATUS_OK : library_status(m, solve_state(m, &shown));
+        m->wall[k] = m->heat->result.wall_temperature[k];
     }
     if (!status && m->failed) status = message_memory();
     free(end);

@@ -28,8 +28,9 @@ static bool varies(const double *value, uint32_t n) {
 
 static void print_head(FILE *script, const struct output *output, const char *name, const struct contents *what) {
     const struct extremes kelvins = extremes_of(what->result->temperature, what->bed->n);
-    double net = 0, light = 0;
+    double net = 0, light = 0, conducted = 0;
     for (uint32_t i = 0; i < what->bed->n; ++i) net += what->result->power[i];
+    for (uint32_t i = 0; i < what->bed->n && what->result->conducted; ++i) conducted += what->result->conducted[i];
     for (uint32_t i = 0; i < what->bed->n && what->light; ++i) light += what->light->absorbed[i];
     const struct prefixed unit = unit_prefixed(fabs(net), "W"), unit_of_light = unit_prefixed(light, "W");
     gnuplot_style(script, output->path, 1500, 700);
@@ -39,6 +40,10 @@ static void print_head(FILE *script, const struct output *output, const char *na
             "' at screen 0.015,0.955 font ',19' tc '#111111' noenhanced\n"
             "set label 2 '%u spheres of %.5g to %.5g K %s %.4g %s",
             what->bed->n, kelvins.low, kelvins.high, net >= 0 ? "gain" : "lose", fabs(net) / unit.scale, unit.name);
+    if (what->result->conducted)
+        fprintf(script, ": %.4g %s by radiation, %.4g %s by conduction",
+                (net >= 0 ? 1 : -1) * (net - conducted) / unit.scale, unit.name,
+                (net >= 0 ? 1 : -1) * conducted / unit.scale, unit.name);
     if (what->light) fprintf(script, "; they absorb %.4g %s of light", light / unit_of_light.scale, unit_of_light.name);
     fputs("' at screen 0.015,0.905 tc '#444444'\n", script);
 }

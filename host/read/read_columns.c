@@ -289,14 +289,20 @@ static int check_twins(const struct source *source) {
     return STATUS_OK;
 }
 
+/* Whether a text stands for a missing value, which is NaN, or for infinity. */
+static bool is_no_number(const char *text, double *value) {
+    const bool infinite = strcasecmp(text, "inf") == 0 || strcasecmp(text, "infinity") == 0;
+    *value = infinite ? INFINITY : NAN;
+    return infinite || *text == 0 || strcasecmp(text, "nan") == 0;
+}
+
 /* Reads the further columns of the last sphere. */
 static int add_extras(struct source *source, struct bed *bed) {
     const struct read_options *options = &source->options;
     for (size_t k = 0; k < options->extras; ++k) {
         const char *text = source->fields.at[source->columns.wanted[k]];
         double *value = &bed->extra[(bed->n - 1) * options->extras + k];
-        *value = NAN;
-        if (options->some && options->some[k] && (*text == 0 || strcasecmp(text, "nan") == 0)) continue; /* missing */
+        if (options->some && options->some[k] && is_no_number(text, value)) continue;
         const int status = columns_number(source, options->extra[k], source->columns.wanted[k], value);
         if (status) return status;
         *value *= source->columns.factor[k];

@@ -33,7 +33,8 @@ struct read_options {
     const char *const *unit; /* [extras] expected units, such as "K" or "W", UNIT_OF_LENGTH, or NULL for none. Values of
                               * a column in kW become W. A column whose header names a unit of another kind is refused.
                               * NULL: no column has one */
-    const bool *some;        /* [extras] blank or nan means a missing value, NaN; NULL: no value may be missing */
+    const bool
+        *some; /* [extras] blank or nan means a missing value, NaN, and values may be infinite; NULL: in no column */
     size_t extras;
     const struct column_name *name; /* [names] the file must have all of these */
     size_t names;

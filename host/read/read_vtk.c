@@ -103,7 +103,7 @@ static int add_point(const struct vtk_file *file, const struct vtk_grid *grid, u
     for (size_t k = 0; k < bed->extras && !status; ++k) {
         const double value = wanted[EXTRAS + k].values[i] * file->factor[k];
         bed->extra[(bed->n - 1) * bed->extras + k] = value;
-        if (isnan(value) && options->some && options->some[k]) continue; /* missing */
+        if (!isfinite(value) && options->some && options->some[k]) continue; /* missing, or out of its range */
         status = vtk_finite(grid, wanted[EXTRAS + k].name, i, value);
     }
     return status;

@@ -239,7 +239,7 @@ typedef struct fibrad_law {
  *   Output   result: the caller's arrays, as for fibrad_heat_read; with a law, temperature, and wall_temperature with
  *            walls, must be set
  *   Errors   as fibrad_bed_beams, fibrad_heat_check, _begin, _step and _read; _CANCELLED
- *            _UNSOLVABLE: also if 100 solutions do not satisfy the law
+ *            _UNSETTLED: also if 100 solutions do not satisfy the law
  *            After an error the emissivities of the law are as before. Conductivities and conductances are as the law
  *            has left them.
  *   Cost     that of the sweeps over the threads */

@@ -86,7 +86,7 @@ static int follow_law(fibrad_bed *bed, const fibrad_heat_sources *sources, const
             largest_ratio(s->conductance, sources->conductance, contacts) <= CONDUCTIVITY_CHANGE)
             return fibrad_heat_read(bed->heat, result);
     }
-    return FIBRAD_E_UNSOLVABLE;
+    return FIBRAD_E_UNSETTLED;
 }
 
 static int settle(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_law *law, fibrad_heat_result *result) {

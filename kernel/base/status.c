@@ -22,6 +22,7 @@ static const char status_text[][106] = {
     [-FIBRAD_E_SUM] = "a row does not add up to 1: a fault of fibrad, please report it",
     [-FIBRAD_E_ENDLESS] = "the walls form a tube or a corner without end: make the missing side a wall or an opening",
     [-FIBRAD_E_FILE] = "a file cannot be made or written",
+    [-FIBRAD_E_UNSETTLED] = "the search for radiosities and temperatures does not converge",
 };
 
 static const char why_text[][74] = {

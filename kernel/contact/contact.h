@@ -42,6 +42,7 @@ typedef struct fibrad_contacts {
     double *diagonal, *search, *product; /* [nodes], used within one call */
     double least;                        /* K, slopes are those at temperatures of at least this */
     bool anchored;                       /* a given temperature holds, by contacts, what radiates */
+    bool afresh;                         /* no earlier solution tells where temperatures are */
 } fibrad_contacts;
 
 /* What belongs together, while sources are checked. A component is a set of nodes that exchange heat. Node `nodes`

@@ -60,7 +60,8 @@ static double resistance_of_spot(double conductivity, double size, double radius
     return (1 - x / FIBRAD_PI * (.5 + fibrad_log(2 * x) + .85 * x)) / (4 * conductivity * size * radius);
 }
 
-/* The end of contact k on `body`. entering: what enters there so far. */
+/* The end of contact k on `body`. entering: what enters there so far. The irradiation on the axis counts most, and
+ * patches have means, so it is extrapolated to patches without size. */
 static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double radius,
                              double entering_so_far, fibrad_rings_work *work) {
     double axis[3], response[FIBRAD_RINGS], apart = 0;
@@ -70,7 +71,7 @@ static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t ot
     const double r = heat->scene->r[body], eps = heat->sources.emissivity[body], k = heat->sources.conductivity[body],
                  uneven = heat->sources.unevenness[body], slope = uneven * k / r;
     enter_at(heat, body, axis, -entering_so_far);
-    fibrad_heat_look_in_rings(heat, body, axis, 1, &mean);
+    fibrad_heat_look_in_rings(heat, body, axis, 1, other >= heat->spheres ? FIBRAD_HEAT_EXTRAPOLATION : 0, &mean);
     enter_at(heat, body, axis, entering_so_far);
     const double less =
         fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven, work, response);

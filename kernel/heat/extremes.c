@@ -87,21 +87,34 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
     return found;
 }
 
-/* Sums of what patches of a sphere have in rings about an axis: areas, and areas times irradiation, J and light. */
-static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign,
+/* How much the irradiation of a patch differs from that of its four, per area. 0: fine patches, which have no four. */
+static double detail_of(const fibrad_heat *heat, uint32_t b, uint32_t a) {
+    const uint32_t first = heat->first[b], begin = a - (a - first) % FIBRAD_HEAT_FOUR;
+    double sum = 0, area = 0;
+    if (a >= first + heat->config.patches) return 0;
+    for (uint32_t k = begin; k < begin + FIBRAD_HEAT_FOUR; k++)
+        sum += heat->solution.area[k] * heat->solution.radiosity[k] + heat->solution.net[k],
+            area += heat->solution.area[k];
+    return heat->solution.radiosity[a] + heat->solution.net[a] / heat->solution.area[a] - sum / area;
+}
+
+/* Sums of what patches of a sphere have in rings about an axis: areas, and areas times irradiation, J and light. The
+ * irradiation is that of each patch plus `sharp` times its difference from its four. */
+static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, double sharp,
                       fibrad_heat_ringed *sums) {
     const uint32_t first = heat->first[b], cube = heat->config.patches;
     fibrad_zero(sums, sizeof *sums);
     for (uint32_t a = first; a < heat->first[b + 1]; a++) {
         const uint32_t points = a < first + cube ? POINTS : 1;
         const double area = heat->solution.area[a] / points, sent = heat->solution.radiosity[a];
+        const double more = sharp > 0 && area > 0 ? sharp * detail_of(heat, b, a) : 0;
         for (uint32_t k = 0; k < points && area > 0; k++) {
             double fine[3];
             if (points == 1) normal_on_patch(heat, b, a - first, .5, .5, fine);
             const double *normal = points == 1 ? fine : heat->normal + 3 * (POINTS * (a - first) + k);
             const uint32_t ring = fibrad_rings_at(heat->rings, sign * fibrad_dot(normal, axis));
             sums->area[ring] += area, sums->sent[ring] += area * sent;
-            sums->arriving[ring] += area * sent + heat->solution.net[a] / points;
+            sums->arriving[ring] += area * (sent + more) + heat->solution.net[a] / points;
             sums->absorbed[ring] += fibrad_heat_entering(heat, a) / points;
         }
     }
@@ -116,9 +129,9 @@ static void average_rings(fibrad_heat_ringed *sums) {
     }
 }
 
-void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign,
+void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, double sharp,
                                fibrad_heat_ringed *mean) {
-    sum_rings(heat, b, axis, sign, mean);
+    sum_rings(heat, b, axis, sign, sharp, mean);
     average_rings(mean);
 }
 
@@ -154,7 +167,7 @@ static double emission_in_rings(const fibrad_heat *heat, uint32_t b, const struc
     const uint32_t count = place->other == FIBRAD_NONE ? 1 : 2;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t body = i == 0 ? b : place->other;
-        fibrad_heat_look_in_rings(heat, body, place->axis, i == 0 ? 1 : -1, &mean[i]);
+        fibrad_heat_look_in_rings(heat, body, place->axis, i == 0 ? 1 : -1, 0, &mean[i]);
         put_in_rings(heat, body, &mean[i], &sphere[i]);
     }
     if (count > 1) {

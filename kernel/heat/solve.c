@@ -253,8 +253,9 @@ static void find_powers(const fibrad_heat *heat, double *power) {
     for (uint32_t b = 0; b < heat->bodies && weights > 0; b++) power[b] += left * (emitting(heat, b) / weights);
 }
 
-/* The relative rounding error of a sum of squares. */
-#define ROUNDING 1e-28
+/* Relative rounding errors of a sum of squares: of emissions, and of radiosities. */
+#define ROUNDING      1e-28
+#define ROUNDING_OF_J 1e-29
 
 /* Unevenness depends on temperatures. If temperatures of spheres that conduct are unknown, unevenness and temperatures
  * are found in turn. The first temperatures are found to the tolerance FIBRAD_HEAT_FIRST_TOLERANCE, later ones to
@@ -405,9 +406,36 @@ static void send_means(fibrad_heat *heat) {
     heat->solution.phase = FIBRAD_HEAT_CHECK;
 }
 
+/* Finds the emissions of joined bodies with which a search begins: those that balance contacts, powers, and as much
+ * radiation as if all that a body sees had its emission of now. */
+static void guess_joined(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    if (c->count == 0 || !c->afresh) return;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] =
+            heat->sources.given_power[b] + (c->stiff[b] - heat->sources.storage[b]) * heat->sources.emission[b];
+    }
+    fibrad_contact_find(c, BALANCED_ROUGHLY);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        const double more = fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b];
+        heat->sources.emission[b] += more;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+            heat->solution.radiosity[a] += heat->sources.emissivity[b] * more;
+    }
+}
+
+/* Has the first sweep of a search form the net flows. */
+static void send_first(fibrad_heat *heat) {
+    guess_joined(heat);
+    send_radiosities(heat);
+}
+
 void fibrad_heat_start(fibrad_heat *heat) {
     if (heat->solution.areas)
-        send_radiosities(heat);
+        send_first(heat);
     else {
         fibrad_heat_link_pencils(heat);
         fibrad_heat_link_rays(heat);
@@ -563,11 +591,31 @@ static bool gains_settled(fibrad_heat *heat) {
     return settled && left <= heat->sources.settled * heat->sources.settled * gains;
 }
 
+/* What rounding errors of the J of a body may add to the product of residuals and changes: J errs by about 1e-16 of
+ * itself, and the body absorbs g times what differs in its J. */
+static double rounding_of(const fibrad_heat *heat, uint32_t b) {
+    const double eps = heat->sources.emissivity[b];
+    const bool conducts = fibrad_heat_conducts(heat, b), free_mean = conducts && follows_radiosity(heat, b);
+    const double of_pattern = conducts ? fibrad_heat_largest_gain(heat, b) : 0;
+    const double of_mean = eps == 1 || free_mean || (conducts && has_black_mean(heat, b)) ? 0 : eps / (1 - eps);
+    double sum = 0;
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
+        sum += heat->solution.area[a] * heat->solution.radiosity[a] * heat->solution.radiosity[a];
+    return ROUNDING_OF_J * fibrad_max(of_pattern, of_mean) * sum;
+}
+
+/* Whether what is left of the residual may be rounding errors of radiosities. */
+static bool is_rounded(const fibrad_heat *heat) {
+    double rounding = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) rounding += rounding_of(heat, b);
+    return heat->solution.slope <= rounding;
+}
+
 /* Whether the radiosities of the present level are good enough. */
 static bool level_solved(fibrad_heat *heat) {
     const double tolerance = fibrad_max(heat->sources.first_tolerance, heat->sources.tolerance);
-    if (heat->solution.slope <= heat->solution.smallest || heat->solution.sweeps >= heat->sources.limit) return true;
-    if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return false;
+    if (heat->solution.slope <= heat->solution.smallest) return true;
+    if (heat->solution.slope > tolerance * tolerance * heat->solution.scale) return is_rounded(heat);
     return tolerance > heat->sources.tolerance || tolerance < GAINS_ROUGHLY || gains_settled(heat);
 }
 
@@ -586,7 +634,7 @@ static void note_unsettled(fibrad_heat *heat) {
 
 /* Whether the unevenness of spheres has changed so much that it was replaced. */
 static bool replaces_unevenness(fibrad_heat *heat) {
-    if (!heat->sources.conducts || heat->solution.sweeps >= heat->sources.limit) return false;
+    if (!heat->sources.conducts) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_unevenness(heat, SETTLED);
     heat->sources.first_tolerance = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
@@ -595,7 +643,7 @@ static bool replaces_unevenness(fibrad_heat *heat) {
 
 /* Whether the flows of contacts at their places have changed so much that they were replaced. */
 static bool replaces_flows(fibrad_heat *heat) {
-    if (heat->spots.entering == NULL || heat->solution.sweeps >= heat->sources.limit) return false;
+    if (heat->spots.entering == NULL) return false;
     find_emissions(heat);
     const double change = fibrad_heat_find_spots(heat);
     const double rough = change > SETTLED ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change) : 0;
@@ -719,7 +767,7 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
     const double curvature = product_with_direction(heat, heat->solution.direction, heat->contacts.direction, product);
     heat->solution.curvature = curvature;
     if (!(curvature > 0)) return;
-    const double length = heat->solution.slope / curvature;
+    const double length = heat->solution.along / curvature;
     find_drifts(heat, length, product);
     for (uint32_t a = 0; a < heat->patches; a++) {
         heat->solution.radiosity[a] += length * heat->solution.direction[a];
@@ -729,16 +777,41 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
         if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
 }
 
+/* The product of the residual with the last direction. In a linear problem it is 0. What the preconditioner makes of
+ * the residual is in heat->solution.source. */
+static double along_last(const fibrad_heat *heat) {
+    const double *z = heat->solution.source, *p = heat->solution.direction;
+    double sum = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double eps = heat->sources.emissivity[b], rho = 1 - eps;
+        double shift = 0, shifted = 0; /* what z and p have from a change of E, or of the mean of J */
+        if (fibrad_heat_is_joined(heat, b)) {
+            shift = eps * heat->contacts.warming[b], shifted = eps * heat->contacts.direction[b];
+            sum += heat->contacts.missing[b] * heat->contacts.direction[b];
+        } else if (fibrad_heat_is_free(heat, b)) {
+            const free_body body = free_body_of(heat, b);
+            if (!(body.area > 0)) continue;
+            shift = fibrad_heat_mean(heat, b, z), shifted = fibrad_heat_mean(heat, b, p);
+            sum += body.area * stiffness(heat, b, &body) * shift * shifted;
+        }
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && rho > 0; a++)
+            sum += heat->solution.area[a] / rho * (z[a] - shift) * (p[a] - shifted);
+    }
+    return sum;
+}
+
 /* How much of the last direction the next one keeps: as much as makes both conjugate. In a linear problem this is the
  * ratio of slopes. Contacts bend, so it differs from that. If it differs much, the last step was of no use for the next
- * one, and nothing is kept. */
+ * one, and nothing is kept. Sets the slope along the direction. */
 #define KEPT_MOST 4.0
-static double kept_of_direction(const fibrad_heat *heat, double ratio, const double *product) {
+static double kept_of_direction(fibrad_heat *heat, double ratio, const double *product) {
     if (heat->contacts.count == 0 || heat->sources.conducts) return ratio;
     if (!(heat->solution.curvature > 0)) return 0;
     const double overlap = product_with_direction(heat, heat->solution.source, heat->contacts.warming, product);
-    const double keep = -overlap / heat->solution.curvature;
-    return keep > 0 && keep < KEPT_MOST * ratio ? keep : 0;
+    const double keep = -overlap / heat->solution.curvature, along = heat->solution.slope + keep * along_last(heat);
+    if (!(keep > 0 && keep < KEPT_MOST * ratio && along > 0)) return 0;
+    heat->solution.along = along;
+    return keep;
 }
 
 /* Decides what comes after a sweep: the next step of the search, the finer level, or the end. If the unevenness of
@@ -753,8 +826,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart || heat->solution.slope == 0 ? 0 : fibrad_sqrt(fibrad_min(1, heat->solution.slope / last));
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
-        const bool rough =
-            heat->sources.first_tolerance > heat->sources.tolerance && heat->solution.sweeps < heat->sources.limit;
+        const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
         const bool replaced = replaces_given(heat, coarse);
         if (!replaced && !(coarse && rough)) {
             leave_level(heat);
@@ -767,11 +839,12 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         restart = restart || replaced;
         heat->solution.slope = find_residual(heat);
     }
+    heat->solution.along = heat->solution.slope;
     turn_direction(heat, restart ? 0 : kept_of_direction(heat, heat->solution.slope / last, product));
     heat->solution.phase = FIBRAD_HEAT_STEPS;
 }
 
-/* Does what the sweep was made for. Error: FIBRAD_E_UNSOLVABLE. */
+/* Does what the sweep was made for. Errors: FIBRAD_E_UNSOLVABLE, FIBRAD_E_UNSETTLED. */
 static int end_sweep(fibrad_heat *heat) {
     const double *sum = fibrad_heat_gathered(heat);
     if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
@@ -780,12 +853,12 @@ static int end_sweep(fibrad_heat *heat) {
         heat->solution.warm = true;
         return FIBRAD_OK;
     }
-    heat->solution.sweeps++;
+    if (heat->solution.sweeps++ >= heat->sources.limit) return FIBRAD_E_UNSETTLED;
     switch (heat->solution.phase) {
     case FIBRAD_HEAT_AREA:
         fibrad_copy(heat->solution.area, sum, heat->patches * sizeof *sum);
         heat->solution.areas = true;
-        send_radiosities(heat);
+        send_first(heat);
         return FIBRAD_OK;
     case FIBRAD_HEAT_FIRST:
         for (uint32_t b = 0; b < heat->bodies; b++)

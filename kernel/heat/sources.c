@@ -465,6 +465,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     set_conduction(heat, sources);
     begin_spots(heat, sources);
     heat->solution.sweeps = 0;
+    heat->contacts.afresh = !heat->solution.warm;
     heat->solution.warm = false;
     fibrad_zero(heat->swept, heat->config.parts);
     fibrad_heat_start(heat);

@@ -50,6 +50,12 @@ static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) 
     }
 }
 
+double fibrad_heat_largest_gain(const fibrad_heat *heat, uint32_t b) {
+    double by[NUMBERS];
+    find_gains(heat, b, by);
+    return by[FIBRAD_HARMONICS_WITHIN];
+}
+
 /* 1/(1 + g) by degree. For the mean it is 0 as well. */
 static void find_dampings(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     find_gains(heat, b, by);

@@ -176,6 +176,7 @@ typedef struct fibrad_heat_solution {
     uint32_t group;          /* patches that have one J: 1, 4, or all of a body */
     uint32_t sweeps;         /* so far */
     double slope;            /* residual times preconditioned residual */
+    double along;            /* residual times search direction; the slope, if the problem is linear */
     double curvature;        /* of the last search direction */
     double scale;            /* the slope is compared with this */
     double smallest;         /* a slope below this is rounding error */

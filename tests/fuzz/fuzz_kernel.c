@@ -477,7 +477,7 @@ static void step(struct session *s) {
     bool all = s->begun && kept(s);
     for (uint32_t k = 0; k < s->parts; k++) all = all && s->swept[k];
     const int status = CALL(fibrad_heat_step(s->heat, &solved));
-    if (all && s->unknown && status == FIBRAD_E_UNSOLVABLE) {
+    if (all && (status == FIBRAD_E_UNSETTLED || (s->unknown && status == FIBRAD_E_UNSOLVABLE))) {
         s->begun = s->solved = false;
         return;
     }

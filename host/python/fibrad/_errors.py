@@ -7,7 +7,7 @@ import os
 from ._library import library
 
 ARGUMENT, TABLE, GEOMETRY, UNSUPPORTED, MEMORY, CANCELLED, UNSOLVABLE, BACK = -1, -5, -6, -10, -11, -12, -13, -14
-SUM, ENDLESS, FILE = -15, -16, -17
+SUM, ENDLESS, FILE, UNSETTLED = -15, -16, -17, -18
 
 
 class Error(Exception):
@@ -56,7 +56,7 @@ class OutOfMemory(Error, MemoryError):
 
 _KINDS = {MEMORY: OutOfMemory, CANCELLED: Cancelled, ARGUMENT: InputError, TABLE: InputError, GEOMETRY: InputError,
           UNSUPPORTED: InputError, UNSOLVABLE: InputError, BACK: InputError, SUM: Error,
-          ENDLESS: InputError, FILE: FileError}
+          ENDLESS: InputError, FILE: FileError, UNSETTLED: InputError}
 
 
 def status_text(status: int) -> str:
