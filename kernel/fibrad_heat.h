@@ -30,8 +30,8 @@ extern "C" {
 #endif
 
 /* How finely the problem is resolved. A field of 0 stands for its default. The default of wall_rays is the largest of
- * three numbers: FIBRAD_WALL_RAYS_DEFAULT, 6 * directions * points, and 8 times the number of patches of all walls. Small
- * meshes send more besides. */
+ * three numbers: FIBRAD_WALL_RAYS_DEFAULT, 6 * directions * points, and 8 times the number of patches of all walls.
+ * Small meshes send more besides. */
 typedef struct fibrad_heat_config {
     uint32_t directions; /* of each sphere, FIBRAD_DIRECTIONS_MIN to _MAX; 0: FIBRAD_HEAT_DIRECTIONS_DEFAULT */
     uint32_t points;     /* of each direction, where beams begin: 64, 128 or 256; 0: FIBRAD_HEAT_POINTS_DEFAULT */

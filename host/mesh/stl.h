@@ -1,4 +1,5 @@
-/* stl.h - triangles of an STL file, text or binary, or of an OBJ file; may be packed by gzip. SPDX-License-Identifier: MIT */
+/* stl.h - triangles of an STL file, text or binary, or of an OBJ file; may be packed by gzip.
+ * SPDX-License-Identifier: MIT */
 #ifndef STL_H
 #define STL_H
 
@@ -11,7 +12,7 @@ enum { SOLID_NAME = 32 };
 struct stl {
     uint32_t n;
     double (*corner)[3][3]; /* [n] */
-    uint64_t *place;        /* [n] text: the line of `facet`, or of `f` in an OBJ file; binary: the number of the triangle from 0 */
+    uint64_t *place;        /* [n] text: the line of `facet` or, in an OBJ file, of `f`; binary: number from 0 */
     uint32_t *solid;        /* [n] number of the solid from 0 */
     bool text;              /* else binary */
     uint32_t solids;

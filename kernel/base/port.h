@@ -16,7 +16,7 @@
 #error "fibrad needs arithmetic in the precision of its types (on 32-bit x86: -msse2 -mfpmath=sse)"
 #endif
 
-#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) ||                              \
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) ||                               \
     defined(__ASSOCIATIVE_MATH__) || defined(__RECIPROCAL_MATH__)
 #error "fibrad needs IEEE 754 arithmetic with NaN and infinity: compile it without -ffast-math and -Ofast"
 #endif
