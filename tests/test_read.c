@@ -694,8 +694,8 @@ TEST(comments_may_begin_as_in_matlab) {
         ck_assert_msg(try(formatted("%s%s", frame, frame)) == 0, "%s", said);
         ck_assert(bed.n == 1 && bed.timestep == 7 && bed.period[0] == 4 && bed.frame == 1);
     }
-    expect_refusal("%ITEM: TIMESTEP\n0\n%ITEM: NUMBER OF ATOMS\n2\n%ITEM: ATOMS x y z r\n0 0 0 1\n%ITEM: TIMESTEP\n",
-                   92, &(struct read_options){0}, 7, "the frame ends after 1 atoms");
+    const char *cut = "%ITEM: TIMESTEP\n0\n%ITEM: NUMBER OF ATOMS\n2\n%ITEM: ATOMS x y z r\n0 0 0 1\n%ITEM: TIMESTEP\n";
+    expect_refusal(cut, strlen(cut), &(struct read_options){0}, 7, "the frame ends after 1 atoms");
 }
 
 TEST(xyz_files_are_read) {
