@@ -337,7 +337,7 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, b
     if (!search.all)
         search.far = fibrad_min(work->reach, fibrad_max(0, MANY_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3));
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = !scene->cut[work->place];
-    search.hidden = hidden && search.all;
+    search.hidden = hidden && search.all && !scene->container.walls;
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
     if (!search.all) try_nearest(&search);
