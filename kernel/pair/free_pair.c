@@ -1,7 +1,6 @@
 /* free_pair.c - finds pairs of spheres that nothing can come between. SPDX-License-Identifier: MIT */
 #include "pair/free_pair.h"
 #include "base/constants.h"
-#include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"
 #include "scene/grid_walk.h"
@@ -36,15 +35,6 @@
 #define HULL_SPHERES 256u
 /* A row asks about so many spheres which of them no window has met. Each of them stands for equally many. */
 #define UNSEEN_ASKED 512u
-
-/* Where at most so many spheres hide a part of a far pair, lines between the two tell how much. They know it better
- * than windows do, if fewer than LINES_BETTER should meet the sphere. FAR_APART: distance of the centres over the sum
- * of the radii. HIDDEN_ERROR: error of a part over that of one line. */
-#define MOST_HIDING   4u
-#define LINES_BETWEEN 256
-#define LINES_BETTER  32.0
-#define FAR_APART     2.0
-#define HIDDEN_ERROR  0.032
 
 /* The square of the error of a sphere that hardly any window should meet, over that of one that many meet, both over
  * the squared difference of halves, minus 1. Measured: docs/accuracy.md. */
@@ -87,28 +77,24 @@ static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
     return distance < r * (1 - TOUCH);
 }
 
-/* Counts the spheres other than the two at `place` and `other` that reach into their hull, up to most + 1. The first
- * `most` go to `between`. most + 1, too, if it takes long to find out, as beside a large sphere among many small ones.
- */
-static uint32_t spheres_between(const fibrad_scene *scene, const pair_hull *hull, uint32_t place, uint32_t other,
-                                uint32_t most, uint32_t *between) {
-    uint32_t compared = 0, count = 0;
+/* Whether a sphere other than the two at `place` and `other` reaches into their hull. True, too, if it takes long to
+ * find out, as beside a large sphere among many small ones. */
+static bool spheres_between(const fibrad_scene *scene, const pair_hull *hull, uint32_t place, uint32_t other) {
+    uint32_t compared = 0;
     for (uint32_t l = 0; l < scene->levels; l++) {
         const double wide = hull->most + scene->level[l].radius_max;
         fibrad_walk walk;
         fibrad_walk_about(&walk, scene, &scene->level[l], hull->from, hull->to, wide);
         while (fibrad_walk_next(&walk)) {
             compared += walk.end - walk.begin;
-            if (compared > HULL_SPHERES) return most + 1;
+            if (compared > HULL_SPHERES) return true;
             for (uint32_t j = walk.begin; j < walk.end; j++) {
                 const double at[3] = {scene->x[j], scene->y[j], scene->z[j]};
-                if (j == place || j == other || !hull_meets(hull, at, scene->r[j])) continue;
-                if (count == most) return most + 1;
-                between[count++] = j;
+                if (j != place && j != other && hull_meets(hull, at, scene->r[j])) return true;
             }
         }
     }
-    return count;
+    return false;
 }
 
 /* Whether a triangle may reach into a hull. Steps along the axis are as long as the nearest triangle allows. */
@@ -125,78 +111,11 @@ static bool triangles_between(const fibrad_scene *scene, const pair_hull *hull) 
     return x < hull->length || fibrad_mesh_distance(&scene->mesh, hull->to, 2 * hull->r[1]) < hull->r[1];
 }
 
-/* A point of the disc about a centre, across the axes u and v, for two numbers in [0, 1). */
-static void point_across(const double centre[3], double r, const double u[3], const double v[3], const double x[2],
-                         double at[3]) {
-    double sine, cosine;
-    fibrad_sincos_turn(x[1], &sine, &cosine);
-    r *= fibrad_sqrt(x[0]);
-    for (int axis = 0; axis < 3; axis++) at[axis] = centre[axis] + r * (cosine * u[axis] + sine * v[axis]);
-}
-
-/* The squared distance of a centre from the line through a point along w. along: out: the depth of the centre. */
-static double square_beside(const double from[3], const double w[3], const double centre[3], double *along) {
-    const double c[3] = {centre[0] - from[0], centre[1] - from[1], centre[2] - from[2]};
-    *along = fibrad_dot(c, w);
-    return fibrad_dot(c, c) - *along * *along;
-}
-
-/* The part of an unobstructed pair that some spheres between leave. Even lines cross both spheres. The measure of lines
- * is that of two points on planes across the axis times the fourth power of the cosine. */
-static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32_t count, const uint32_t *between) {
-    const double sine = (hull->r[0] + hull->r[1]) / hull->length, wider = 1 / fibrad_sqrt(1 - sine * sine);
-    double u[3], v[3], all = 0, left = 0;
-    fibrad_frame_about(hull->axis, u, v);
-    for (uint64_t k = 0; k < LINES_BETWEEN; k++) {
-        double x[4], p[3], q[3], w[3], from, to, along;
-        for (int d = 0; d < 4; d++) x[d] = fibrad_quasirandom(4, d, k, 0);
-        point_across(hull->from, hull->r[0] * wider, u, v, x, p);
-        point_across(hull->to, hull->r[1] * wider, u, v, x + 2, q);
-        for (int axis = 0; axis < 3; axis++) w[axis] = q[axis] - p[axis];
-        const double inverse = 1 / fibrad_sqrt(fibrad_dot(w, w)), cosine = hull->length * inverse;
-        for (int axis = 0; axis < 3; axis++) w[axis] *= inverse;
-        if (square_beside(p, w, hull->from, &from) > hull->r[0] * hull->r[0]) continue;
-        if (square_beside(p, w, hull->to, &to) > hull->r[1] * hull->r[1]) continue;
-        const double weight = cosine * cosine * (cosine * cosine);
-        bool open = true;
-        for (uint32_t b = 0; b < count && open; b++) {
-            const uint32_t j = between[b];
-            const double at[3] = {scene->x[j], scene->y[j], scene->z[j]};
-            open = square_beside(p, w, at, &along) > scene->r[j] * scene->r[j] || along < from || along > to;
-        }
-        all += weight, left += open ? weight : 0;
-    }
-    return left / all;
-}
-
-/* What the spheres at two places see of each other. */
-typedef struct pair_view {
-    double f;     /* the factor from the first to the second one */
-    double error; /* of it */
-} pair_view;
-
-/* Whether nothing, or at most so many spheres, come between the spheres at two places. */
-static bool pair_seen(const fibrad_scene *scene, uint32_t place, uint32_t other, uint32_t most, pair_view *view) {
-    uint32_t between[MOST_HIDING];
-    const pair_hull hull = hull_of(scene, place, other);
-    if (scene->cut[other]) return false;
-    const uint32_t count = spheres_between(scene, &hull, place, other, most, between);
-    if (count > most || (scene->mesh.triangles > 0 && triangles_between(scene, &hull))) return false;
-    view->error = 0;
-    if (fibrad_pair_exact(hull.r[0], hull.r[1], hull.length - (hull.r[0] + hull.r[1]), &view->f) != FIBRAD_OK)
-        return false;
-    if (count == 0) return true;
-    const double left = part_left(scene, &hull, count, between);
-    view->error = view->f * HIDDEN_ERROR * fibrad_sqrt(left * (1 - left) + 1.0 / LINES_BETWEEN);
-    view->f *= left;
-    return true;
-}
-
 bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f) {
-    pair_view view;
-    const bool seen = pair_seen(scene, place, other, 0, &view);
-    if (seen) *f = view.f;
-    return seen;
+    const pair_hull hull = hull_of(scene, place, other);
+    if (scene->cut[other] || spheres_between(scene, &hull, place, other)) return false;
+    if (scene->mesh.triangles > 0 && triangles_between(scene, &hull)) return false;
+    return fibrad_pair_exact(hull.r[0], hull.r[1], hull.length - (hull.r[0] + hull.r[1]), f) == FIBRAD_OK;
 }
 
 static double sum_of_entry(const fibrad_entries *entries, uint32_t entry) {
@@ -230,7 +149,6 @@ typedef struct pair_search {
     int64_t moved;     /* [UNIT] */
     uint64_t unseen;   /* [SQUARE_UNIT] */
     bool all, pairs;   /* all spheres are tried; pairs may be free */
-    bool hidden;       /* pairs of which few spheres hide a part count, too */
     bool sparse;       /* what no window has met may count; in dense scenes other spheres hide it */
     bool untold;       /* some sphere has been met by no window, and its pair is not free */
 } pair_search;
@@ -240,28 +158,23 @@ static double free_factor(double r, double square) {
     return r * r / (2 * square * (1 + fibrad_sqrt(fibrad_max(0, 1 - (1 + r * r) / square))));
 }
 
-/* Takes the factor to the sphere at a place if its pair is free, or if few spheres hide a part of it. windows: that
- * should meet it. seen: what they have seen of it. */
-static bool take_pair(pair_search *search, uint32_t other, double windows, double square, double seen) {
+/* Takes the exact factor to the sphere at a place if its pair is free. seen: what the windows have seen of it. */
+static bool take_free_pair(pair_search *search, uint32_t other, double seen) {
     const fibrad_workspace *work = search->work;
     const fibrad_scene *scene = work->scene;
     fibrad_entries *entries = &search->work->entries;
     const double at[3] = {scene->x[other], scene->y[other], scene->z[other]}, inverse = work->inverse;
-    const double r = scene->r[other] * inverse;
-    const bool hidden = search->hidden && windows < LINES_BETTER && square > FAR_APART * FAR_APART * (1 + r) * (1 + r);
-    double c[3];
-    pair_view view;
+    double c[3], f;
     for (int axis = 0; axis < 3; axis++) c[axis] = (at[axis] - work->centre[axis]) * inverse;
-    if (!hidden && FIBRAD_VERSION_OF(fibrad_near_between, scene->facts.isa)(&work->near, c, r)) return false;
-    if (!pair_seen(scene, work->place, other, hidden ? MOST_HIDING : 0, &view)) return false;
-    search->unseen += (uint64_t)(view.error * view.error / SQUARE_UNIT);
-    if (view.f == 0) return true; /* what windows have seen remains */
+    if (FIBRAD_VERSION_OF(fibrad_near_between, scene->facts.isa)(&work->near, c, scene->r[other] * inverse))
+        return false;
+    if (!fibrad_free_pair(scene, work->place, other, &f)) return false;
     const uint32_t entry = fibrad_entries_of(entries, other);
     if (entry == FIBRAD_NONE)
         entries->missed++;
     else
-        entries->exact[entry] = view.f;
-    search->moved += (int64_t)((seen - view.f) / UNIT);
+        entries->exact[entry] = f;
+    search->moved += (int64_t)((seen - f) / UNIT);
     return true;
 }
 
@@ -276,7 +189,7 @@ static void try_sphere(pair_search *search, uint32_t other, bool many) {
     const double seen = entry != FIBRAD_NONE ? sum_of_entry(&work->entries, entry) * search->scale : 0;
     const double part = search->all || !many ? 0 : 1 - SOME_WINDOWS / windows; /* of a free factor */
     if (seen < part * least || seen < part * free_factor(r, square)) return;
-    if (search->pairs && take_pair(search, other, windows, square, seen)) return;
+    if (search->pairs && take_free_pair(search, other, seen)) return;
     if (entry == FIBRAD_NONE) search->untold = true;
     if (entry != FIBRAD_NONE || !search->sparse || 2 * windows >= 1) return;
     const double missed = least * (1 - 2 * windows);
@@ -325,7 +238,7 @@ static double open_of(const fibrad_workspace *work, double scale) {
     return 1 - (double)units * UNIT;
 }
 
-fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, bool hidden) {
+fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale) {
     const fibrad_scene *scene = work->scene;
     fibrad_entries *entries = &work->entries;
     const uint32_t n = scene->facts.spheres, met = entries->length;
@@ -337,7 +250,6 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, b
     if (!search.all)
         search.far = fibrad_min(work->reach, fibrad_max(0, MANY_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3));
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = !scene->cut[work->place];
-    search.hidden = hidden && search.all && !scene->container.walls;
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
     if (!search.all) try_nearest(&search);
