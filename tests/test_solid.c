@@ -51,7 +51,7 @@ TEST(no_relative_conductivity) {
     struct bed_options options = {.name = "bed"};
     struct quantity solid = {0};
     double relative[2];
-    static const char *const wrong[] = {"0", "-1", "1e13", "1:0", "1:2,1:3", ""};
+    static const char *const wrong[] = {"0", "-1", "1:0", "1:2,1:3", ""};
     const double hot[] = {1000, 1e5};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) ck_assert_int_eq(solid_option(wrong[k], &solid), 2);
     ck_assert_int_eq(solid_option("1:2", &solid), 0);
@@ -427,7 +427,7 @@ TEST(mistakes) {
         const char *temperature, *unit, *solid, *more, *message;
         int status;
     } cases[] = {
-        {"1000", "mm", "0", NULL, "--solid-conductivity: 0 is not within 1e-06 and 1e+12", 2},
+        {"1000", "mm", "0", NULL, "--solid-conductivity: 0 is not within 1e-06 and inf", 2},
         {"1000", "mm", "-3", NULL, "--solid-conductivity: -3 is not within", 2},
         {"1000", "mm", "nan", NULL, "no column nan", 3},
         {"1000", "mm", "nothing", NULL, "cell.csv:2:", 3},
