@@ -430,7 +430,6 @@ TEST(mistakes) {
         {"1000", "mm", "0", NULL, "--solid-conductivity: 0 is not within 1e-06 and inf", 2},
         {"1000", "mm", "-3", NULL, "--solid-conductivity: -3 is not within", 2},
         {"1000", "mm", "nan", NULL, "no column nan", 3},
-        {"1000", "mm", "nothing", NULL, "cell.csv:2:", 3},
         {"1000", "mm", "missing", NULL, "missing", 3},
         {"1000", "mm", "1:5", NULL, "type", 3},
         {"1000", "mm", "@none.csv", NULL, "none.csv", 4},
