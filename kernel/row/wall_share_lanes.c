@@ -386,7 +386,8 @@ void LANED(fibrad_walls_share)(fibrad_workspace *work, const double frame[9], co
     if (points->count > 0) window.part = 0.4 + 0.6 * rest / whole;
     if (work->walls->view.cut)
         window.part *= 1.25; /* there is no solid angle here that corrects the unevenness of the discs */
-    if (points->count == 0) fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
+    if (points->count == 0 && work->walls->view.only == 3)
+        fibrad_areas_slope(&work->areas, work->disc.resolved, window.slope);
     for (int axis = 0; axis < 2; axis++) window.slope[axis] *= whole / FIBRAD_PI;
     share_window(work, frame, points, &window);
 }
