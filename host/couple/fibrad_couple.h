@@ -235,10 +235,10 @@ int fibrad_insitu_powers(fibrad_insitu *insitu, const fibrad_insitu_state *state
                          fibrad_insitu_totals *totals);
 
 /* What is not known of each particle: the part of its row beyond the cutoff, and the error of its power.
- *   Output   error[n][2]: the fraction of its emission that passed the cutoff when the row was made, and the estimated
- *            error of its last power [sigma K^4 L^2], from the noise of its row and of rows that have it. n and the
- *            order are those of the state of the last call of fibrad_insitu_powers. The first is 1 for a particle that
- *            has no row. Both are 0 for a particle that is left out.
+ *   Output   error[n][2]: first the fraction of its emission that passed the cutoff when the row was made. Second the
+ *            estimated error of its last power [sigma K^4 L^2], from the noise of its row and of rows that have it. n
+ *            and the order are those of the state of the last call of fibrad_insitu_powers. The first is 1 for a
+ *            particle that has no row. Both are 0 for a particle that is left out.
  *   Errors   _ARGUMENT
  *            _STATE: no powers were computed since rows were made
  *            _MEMORY

@@ -133,17 +133,13 @@ void warn_made(struct warned *warned, const struct bed *bed, const struct walls 
 
 void warn_joined(struct warned *warned, const char *wall) {
     if (is_new(warned, JOINED_WALL))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: the insulated wall %s is in contact, so it has one temperature, as with %s:power=0", wall,
-                   wall);
+        WARN(0, "the insulated wall %s is in contact, so it has one temperature, as with %s:power=0", wall, wall);
 }
 
 void warn_hot(struct warned *warned, double hottest) {
     if (hottest > SOLIDS_MELT && is_new(warned, HOT))
-        message_at(STATUS_OK, warned->file, 0,
-                   "warning: temperatures of up to %.0f K come out, at which no solid is left; are powers, light and "
-                   "units right?",
-                   hottest);
+        WARN(0, "temperatures of up to %.0f K come out, at which no solid is left; are powers, light and units right?",
+             hottest);
 }
 
 /* ---- frames ----------------------------------------------------------------------------------------------------- */
@@ -194,11 +190,10 @@ void warn_waves(struct warned *warned, const struct bed *bed, double hottest) {
     for (uint32_t i = 0; i < bed->n; ++i)
         if (bed->r[i] * bed->metres * hottest < WAVES_LEAST && count++ == 0) first = i;
     if (count > 0 && hottest > 0 && is_new(warned, WAVES))
-        message_at(
-            STATUS_OK, warned->file, bed->line[first],
-            "warning: sphere %lld (one of %u) has a radius of %.2g m. Radiation of %g K has wavelengths of %.2g m: "
-            "geometrical optics do not hold for such spheres and gaps",
-            (long long)bed_name(bed, first), count, bed->r[first] * bed->metres, hottest, WIEN / hottest);
+        WARN(bed->line[first],
+             "sphere %lld (one of %u) has a radius of %.2g m. Radiation of %g K has wavelengths of %.2g m: "
+             "geometrical optics do not hold for such spheres and gaps",
+             (long long)bed_name(bed, first), count, bed->r[first] * bed->metres, hottest, WIEN / hottest);
 }
 
 /* ---- walls ------------------------------------------------------------------------------------------------------ */
