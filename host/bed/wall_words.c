@@ -29,7 +29,7 @@ enum { SHAPES = sizeof shapes / sizeof *shapes };
 /* What is the value of a key. */
 enum value { FLAG, NUMBER, TEXT };
 
-#define OPEN_EXCLUDES (WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CAPACITY)
+#define OPEN_EXCLUDES (WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CAPACITY | WALL_CONVECTION | WALL_GAS)
 
 static const struct key {
     const char *name, *example; /* of a value */
@@ -54,6 +54,9 @@ static const struct key {
      offsetof(struct wall_words, absorptivity)},
     {"capacity", "500", WALL_CAPACITY, WALL_OPEN, WALL_NONE, NUMBER, 1e-300, 1e300,
      offsetof(struct wall_words, capacity)},
+    {"convection", "20", WALL_CONVECTION, WALL_OPEN, WALL_NONE, NUMBER, 0, 1e12,
+     offsetof(struct wall_words, convection)},
+    {"gas", "300", WALL_GAS, WALL_OPEN, WALL_NONE, NUMBER, -1e9, 1e9, offsetof(struct wall_words, gas)},
     {"name", "lid", WALL_OTHER_NAME, 0, WALL_MESH, TEXT, 0, 0, offsetof(struct wall_words, mesh.name)},
     {"solids", NULL, WALL_SOLIDS, 0, WALL_MESH, FLAG, 0, 0, 0},
     {"scale", "0.001", WALL_SCALE, 0, WALL_MESH, NUMBER, 1e-12, 1e12, offsetof(struct wall_words, mesh.scale)},
@@ -110,7 +113,8 @@ static bool begin_wall(struct wall_words *wall, const char *word, unsigned allow
                                 .temperature = NAN,
                                 .power = NAN,
                                 .emissivity = 1,
-                                .absorptivity = NAN};
+                                .absorptivity = NAN,
+                                .gas = NAN};
     if (wall->shape == WALL_PLANE)
         wall->wall =
             (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {shapes[k].number / 2, shapes[k].number % 2, NAN}};

@@ -4,6 +4,7 @@
 #define HEAT_H
 
 #include "contact_options/contact_option.h"
+#include "heat/film.h"
 #include "heat/heat_given.h"
 #include "heat/light_option.h"
 
@@ -97,6 +98,7 @@ struct heat {
     struct time_options time;
     struct light_options light;
     struct contact_options contacts;
+    struct film_options film;
     struct face face;
     struct profile profile;
     struct quantity emissivities, solid;
@@ -118,6 +120,7 @@ struct heat {
     const fibrad_wall *around;     /* the cylinder whose axis a profile along r is measured from; NULL: none */
     struct light_state lit;        /* light from outside; its options NULL: there is none */
     struct contact_state touching; /* what conducts between spheres; options NULL: nothing does */
+    struct film_state films;       /* convection */
     fibrad_heat_sources sources;   /* [K]; surroundings NaN: the bed is closed; powers in watts only in time */
 
     /* ---- its result ---- */

@@ -115,6 +115,7 @@ int heat_solve(struct heat *h) {
     light_add(h);
     scale_result(h, square_metres);
     contacts_scale(&h->touching, h->bed->n, h->walls.count);
+    film_scale(&h->films, h->bed->n, h->walls.count, &h->result);
     light_scale(h, square_metres);
     heat_find_figures(h);
     h->seconds = progress_clock() - begun;

@@ -324,7 +324,7 @@ double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_err
 
 double fibrad_heat_power_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
     const double square = fibrad_heat_radiated_error(heat, errors, b);
-    if (heat->contacts.count == 0 || fibrad_heat_is_free(heat, b)) return fibrad_sqrt(square);
+    if (!heat->contacts.joins || fibrad_heat_is_free(heat, b)) return fibrad_sqrt(square);
     return fibrad_sqrt(square + heat->contacts.supply[b]);
 }
 
@@ -539,5 +539,5 @@ void fibrad_heat_find_errors(const fibrad_heat *heat, fibrad_heat_errors *errors
     find_sent(heat, errors);
     find_pools(heat, errors);
     find_common(heat, errors);
-    if (heat->contacts.count > 0) find_joined_errors(heat, errors);
+    if (heat->contacts.joins) find_joined_errors(heat, errors);
 }

@@ -181,7 +181,7 @@ static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
  * contacts.missing keeps what is missing in their balances. */
 static void warm_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
-    if (c->count == 0) return;
+    if (!c->joins) return;
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -294,7 +294,7 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
 static double scale_of_contacts(fibrad_heat *heat, double emission) {
     fibrad_contacts *c = &heat->contacts;
     double sum = 0;
-    if (c->count == 0) return 0;
+    if (!c->joins) return 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const bool joined = fibrad_heat_is_joined(heat, b);
         c->temperature[b] = fibrad_contact_temperature(c, joined ? emission : heat->sources.emission[b]);
@@ -346,7 +346,7 @@ static void heat_by_light(fibrad_heat *heat) {
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = heat->contacts.count > 0 && heat->contacts.anchored, radiates = false;
+    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
         radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
@@ -357,7 +357,7 @@ static bool solvable(fibrad_heat *heat) {
         sum += light, sizes += light;
     }
     heat->sources.free_level = !held;
-    if (heat->contacts.count > 0) return held || !radiates;
+    if (heat->contacts.joins) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -410,7 +410,7 @@ static void send_means(fibrad_heat *heat) {
  * radiation as if all that a body sees had its emission of now. */
 static void guess_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
-    if (c->count == 0 || !c->afresh) return;
+    if (!c->joins || !c->afresh) return;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
         c->stiff[b] = stiffness_of_joined(heat, b);
@@ -523,7 +523,7 @@ static void finish_powers(fibrad_heat *heat) {
         if (fibrad_heat_is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
-    if (heat->contacts.count > 0) finish_contacts(heat);
+    if (heat->contacts.joins) finish_contacts(heat);
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
     send_means(heat);
 }
@@ -665,7 +665,7 @@ static void turn_direction(fibrad_heat *heat, double keep) {
         heat->solution.direction[a] = heat->solution.source[a] + (keep != 0 ? keep * heat->solution.direction[a] : 0);
         heat->solution.source[a] = heat->solution.direction[a];
     }
-    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.joins; b++)
         heat->contacts.direction[b] = heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
 }
 
@@ -758,7 +758,7 @@ static double product_with_direction(const fibrad_heat *heat, const double *z, c
                : fibrad_heat_is_joined(heat, b) ? joined_product(heat, b, z, warmed[b], product)
                : fibrad_heat_is_free(heat, b)   ? free_product(heat, b, z, product)
                                                 : given_product(heat, b, z, product);
-    if (heat->contacts.count > 0) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
+    if (heat->contacts.joins) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
     return sum;
 }
 
@@ -773,7 +773,7 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
         heat->solution.radiosity[a] += length * heat->solution.direction[a];
         heat->solution.net[a] += length * product[a];
     }
-    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.joins; b++)
         if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
 }
 
@@ -805,7 +805,7 @@ static double along_last(const fibrad_heat *heat) {
  * one, and nothing is kept. Sets the slope along the direction. */
 #define KEPT_MOST 4.0
 static double kept_of_direction(fibrad_heat *heat, double ratio, const double *product) {
-    if (heat->contacts.count == 0 || heat->sources.conducts) return ratio;
+    if (!heat->contacts.joins || heat->sources.conducts) return ratio;
     if (!(heat->solution.curvature > 0)) return 0;
     const double overlap = product_with_direction(heat, heat->solution.source, heat->contacts.warming, product);
     const double keep = -overlap / heat->solution.curvature, along = heat->solution.slope + keep * along_last(heat);
