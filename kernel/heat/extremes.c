@@ -137,6 +137,7 @@ void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double
 
 static void put_in_rings(const fibrad_heat *heat, uint32_t b, const fibrad_heat_ringed *mean, fibrad_ringed *sphere) {
     sphere->radius = heat->scene->r[b], sphere->emissivity = heat->sources.emissivity[b];
+    sphere->biot = fibrad_heat_biot(heat, b);
     sphere->unevenness = heat->sources.unevenness[b], sphere->emission = heat->sources.emission[b];
     fibrad_copy(sphere->arriving, mean->arriving, sizeof sphere->arriving);
     fibrad_copy(sphere->absorbed, mean->absorbed, sizeof sphere->absorbed);
