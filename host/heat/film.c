@@ -23,6 +23,10 @@ int gas_temperature_option(const char *text, void *film_options) { /* --temperat
     return quantity_option("--gas-temperature", text, -KELVIN_OF_0_CELSIUS, TEMPERATURE_MAX, &options->gas);
 }
 
+bool film_given(const struct film_options *options, const struct wall_options *walls) {
+    return options->coefficient.given || walls_keys(walls) & WALL_CONVECTION;
+}
+
 int film_check(struct film_options *options, struct bed_options *bed, double zero, bool timed) {
     const bool of_walls = walls_keys(&bed->walls) & WALL_CONVECTION, wall_gas = walls_keys(&bed->walls) & WALL_GAS;
     if (options->coefficient.given && !options->gas.given)

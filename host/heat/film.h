@@ -43,6 +43,9 @@ struct film_state {
     double per_watt;              /* film over W/K */
 };
 
+/* Whether the options ask for films. */
+bool film_given(const struct film_options *options, const struct wall_options *walls);
+
 /* Checks the options when all have been read. zero: of the unit of temperatures [K]. Status 0, STATUS_USAGE, or as
  * curve_read. */
 int film_check(struct film_options *options, struct bed_options *bed, double zero, bool timed);

@@ -70,10 +70,10 @@ static void warn_levels(struct heat *h) {
 
 /* Reads what is given of spheres and walls, and makes sure of the unit of length. */
 static int read_values(struct heat *h, struct bed *bed) {
-    const char *needed = h->solid.given                 ? SOLID_NEEDS
-                         : contacts_given(&h->contacts) ? CONTACTS_NEED
-                         : h->film.gas.given            ? "--convection needs"
-                                                        : NULL;
+    const char *needed = h->solid.given                            ? SOLID_NEEDS
+                         : contacts_given(&h->contacts)            ? CONTACTS_NEED
+                         : film_given(&h->film, &h->options.walls) ? "--convection needs"
+                                                                   : NULL;
     struct walls opened;
     int status = bed_options_walls(&h->options, bed, &h->walls);
     if (!status) status = given_values(&h->given, bed, h->options.name, &h->walls, &h->values);
@@ -86,7 +86,8 @@ static int read_values(struct heat *h, struct bed *bed) {
     opened = h->walls;
     if (!status) status = face_begin(h, &opened);
     if (!status) status = light_begin(h);
-    if (!status && !h->given.timed && !contacts_given(&h->contacts) && !h->film.gas.given) /* joined: by the library */
+    if (!status && !h->given.timed && !contacts_given(&h->contacts) &&
+        !film_given(&h->film, &h->options.walls)) /* joined: by the library */
         status = given_reflectors(&h->values, h->emissivity, &h->walls, h->wall_emissivity, bed, h->options.name);
     if (!status) status = bed_options_metres(&h->options, bed, needed);
     return status ? status : bed_options_make(&h->options, bed, &opened, &h->made);
