@@ -105,8 +105,8 @@ void light_scale(struct heat *h, double factor) {
     r->error_patches *= factor;
 }
 
-/* Adds the error of the absorbed light to that of a temperature that was found. conducts: what contacts conduct for
- * each kelvin. */
+/* Adds the error of the absorbed light to that of a temperature that was found. conducts: what contacts and films
+ * conduct for each kelvin. */
 static void add_to_temperature(const struct heat *h, double area, double emissivity, double conducts, double light,
                                double temperature, double *error) {
     const double slope = 4 * h->sources.sigma * gsl_pow_3(temperature) * area * emissivity + conducts;
@@ -119,6 +119,8 @@ static void add_to_temperatures(struct heat *h) {
     const fibrad_heat_result *r = &h->result;
     const struct light_state *state = &h->lit;
     double *conducts = calloc(h->bed->n + WALLS_MAX, sizeof *conducts);
+    for (uint32_t i = 0; conducts && s->film && i < h->bed->n; ++i) conducts[i] = s->film[i];
+    for (uint32_t k = 0; conducts && s->wall_film && k < h->walls.count; ++k) conducts[h->bed->n + k] = s->wall_film[k];
     for (uint32_t k = 0; conducts && k < s->contacts; ++k)
         for (int end = 0; end < 2 && s->contact_first[k] != s->contact_second[k]; ++end)
             conducts[end ? s->contact_second[k] : s->contact_first[k]] += s->conductance[k];

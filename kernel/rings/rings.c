@@ -162,7 +162,7 @@ void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double
 }
 
 /* Finds work->spread[i] of a sphere with a film, by elimination: (1 + B S)^-1 S. */
-static void find_spread(const fibrad_rings *rings, double biot, uint32_t i, fibrad_rings_work *work) {
+static void film_spread(const fibrad_rings *rings, double biot, uint32_t i, fibrad_rings_work *work) {
     fibrad_copy(work->spread[i], rings->spread, sizeof rings->spread);
     if (biot == 0) return;
     for (uint32_t k = 0; k < RINGS; k++)
@@ -216,7 +216,7 @@ static void set_rows(const fibrad_ringed *sphere, uint32_t count, uint32_t i, fi
 double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count,
                         fibrad_rings_work *work) {
     double spread[RINGS];
-    for (uint32_t i = 0; i < count; i++) find_spread(rings, sphere[i].biot, i, work);
+    for (uint32_t i = 0; i < count; i++) film_spread(rings, sphere[i].biot, i, work);
     for (uint32_t i = 0; i < count; i++) set_rows(sphere, count, i, work);
     fibrad_solve_linear(count * RINGS, 2 * RINGS + 1, work->row[0]);
     double top = conducted_at(work->spread[0], &sphere[0], 0, spread) - sphere[0].emission;
@@ -237,7 +237,7 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
 double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness, double biot,
                          fibrad_rings_work *work, double response[RINGS]) {
     double flux[RINGS], less = 0;
-    find_spread(rings, biot, 0, work);
+    film_spread(rings, biot, 0, work);
     for (uint32_t k = 0; k < RINGS; k++) {
         double *row = work->row[k];
         for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * work->spread[0][k][m] + (k == m);
