@@ -244,6 +244,24 @@ TEST(a_room) {
     ck_assert_double_lt(fabs(sum), 1e-12 * largest);
 }
 
+/* In closed beds only contacts or films fix the level of temperatures. All that is given off leaves through them. */
+TEST(closed_beds_lose_all_powers) {
+    const char *q = in_folder("q.csv"),
+               *bed = write_file("closed.csv", "x,y,z,r,e,T,P\n0,0,0,.01,.8,,5\n.03,0,0,.01,.7,,0\n"
+                                               "0,.03,0,.01,.5,,2\n.03,.03,0,.01,0,600,\n");
+#define CLOSED                                                                                                         \
+    "heat", bed, "--length-unit", "m", "--emissivity", "e", "--power", "P", "-o", q, "--wall",                         \
+        "xmin:at=-.02:insulated,xmax:at=.05:insulated,ymin:at=-.02:insulated,ymax:at=.05:insulated,"                   \
+        "zmin:at=-.02:insulated,zmax:at=.02:insulated"
+    SUCCEED(CLOSED, "--temperature", "T", "--contacts", write_file("held.csv", "i,j,W/K\n0,3,.1\n1,0,.2\n2,1,.1\n"));
+    assert_near(column(q, 0, 1), 600 + 7 / .1, 1e-10);
+    assert_near(column(q, 3, 2), 7, 1e-10);
+    bed = write_file("free.csv", "x,y,z,r,e,P\n0,0,0,.01,.8,5\n.03,0,0,.01,.7,0\n0,.03,0,.01,.5,2\n");
+    SUCCEED(CLOSED, "--convection", "20", "--gas-temperature", "300");
+    assert_near(column(q, 9, 2), 7, 1e-10);
+    assert_near(column(q, 0, 1) + column(q, 1, 1) + column(q, 2, 1), 900 + 7 / (20 * AREA), 1e-9);
+}
+
 TEST(at_fault) {
     FAIL_WITH(2, ALONE, "--emissivity", "1", "--power", "0", "--convection", "5");
     expect_message("--convection needs --gas-temperature", "");

@@ -463,8 +463,9 @@ static double extrapolated_emission(const fibrad_heat *heat, uint32_t b) {
            FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]);
 }
 
-/* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. */
-static void set_balances(fibrad_heat *heat) {
+/* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. `more` arrives besides, by
+ * emissivity times area. area: the sum of these. */
+static void set_balances(fibrad_heat *heat, double more, double area) {
     fibrad_contacts *c = &heat->contacts;
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_heat_add_offsets(heat, c->supply);
@@ -474,30 +475,69 @@ static void set_balances(fibrad_heat *heat) {
             fibrad_contact_temperature(c, fibrad_heat_is_free(heat, b) ? emission : heat->sources.emission[b]);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + (c->stiff[b] - storage) * emission;
+        const double emits = c->stiff[b] - storage;
+        c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + emits * emission;
+        if (more != 0) c->supply[b] += more * (emits / area);
     }
 }
 
-/* Finds the temperatures that balance powers, radiation and contacts to rounding, and what contacts conduct. What
- * joined bodies then gain less by radiation goes to the others that emit, by emissivity times area. */
-static void finish_contacts(fibrad_heat *heat) {
+/* What a joined body gains by radiation at the temperature that was found. */
+static double radiated_by_joined(const fibrad_heat *heat, uint32_t b) {
+    const fibrad_contacts *c = &heat->contacts;
+    const double emits = c->stiff[b] - heat->sources.storage[b];
+    return c->supply[b] - c->gain[b] - heat->sources.given_power[b] -
+           emits * fibrad_contact_emission(c, c->temperature[b]);
+}
+
+/* Finds the temperatures that balance powers, radiation and contacts to rounding. Returns how much less joined bodies
+ * then gain by radiation. */
+static double balance_joined(fibrad_heat *heat, double more, double area) {
     fibrad_contacts *c = &heat->contacts;
-    double left = 0, weights = 0;
-    set_balances(heat);
+    double left = 0;
+    set_balances(heat, more, area);
     fibrad_contact_find(c, FOUND);
     fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
     fibrad_heat_add_offsets(heat, c->gain);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (fibrad_heat_is_joined(heat, b)) left += heat->solution.power[b] - radiated_by_joined(heat, b);
+    return left;
+}
+
+/* If no other body takes what is left, the level of the temperatures is not quite right: finds how much more joined
+ * bodies must receive, so that all powers by radiation add up to 0. missed: what they add up to before that. In the
+ * level the problem is nearly linear. */
+#define LEVEL_STEPS 12
+static void find_level(fibrad_heat *heat, double left, double missed, double area, double powers) {
+    double more = left - missed, last = 0, before = left - missed;
+    for (int step = 0; step < LEVEL_STEPS && fibrad_abs(before) > FOUND * powers; step++) {
+        const double now = balance_joined(heat, more, area) - missed, slope = (now - before) / (more - last);
+        if (!(slope < 0)) return;
+        last = more, before = now, more -= now / slope;
+    }
+}
+
+/* Finds the temperatures of joined bodies, and what contacts conduct. What joined bodies then gain less by radiation
+ * goes to the others that emit, by emissivity times area. */
+static void finish_contacts(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    double weights = 0, joined = 0, powers = 0, missed = 0;
+    const double left = balance_joined(heat, 0, 0);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
-        if (!fibrad_heat_is_joined(heat, b)) continue;
-        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.storage[b];
-        const double power =
-            c->supply[b] - c->gain[b] - heat->sources.given_power[b] - emits * fibrad_contact_emission(c, t);
-        left += heat->solution.power[b] - power, heat->solution.power[b] = power;
-        heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
+        if (fibrad_heat_is_joined(heat, b)) joined += c->stiff[b] - heat->sources.storage[b];
+        missed += heat->solution.power[b];
+        powers += fibrad_abs(heat->solution.power[b]) + fibrad_abs(heat->sources.given_power[b]);
     }
-    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++)
-        if (!fibrad_heat_is_joined(heat, b)) heat->solution.power[b] += left * (emitting(heat, b) / weights);
+    if (weights == 0 && joined > 0) find_level(heat, left, missed, joined, powers);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (fibrad_heat_is_joined(heat, b)) {
+            const double t = c->temperature[b];
+            heat->solution.power[b] = radiated_by_joined(heat, b);
+            heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
+        } else if (weights > 0) {
+            heat->solution.power[b] += left * (emitting(heat, b) / weights);
+        }
+    }
     fibrad_contact_gains(c, c->temperature, c->gain);
 }
 
