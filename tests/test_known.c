@@ -51,12 +51,11 @@ static void add_mesh(struct hall *h) {
 /* What bounds the space from 0 to 4 along each axis. */
 static void add_bounds(struct hall *h, int kind) {
     if (kind == 1) h->wall[h->walls++] = cylinder_at(2, 2, 2);
-    for (int face = kind == 1 ? 4 : 0; face < 6; face++) {
+    for (int face = kind == 1 ? 4 : 0; face < 6; face++)
         if (face == 1 || face == 5)
             h->opening[h->openings++] = (fibrad_plane){face / 2, 1, 4};
         else
             h->wall[h->walls++] = plane_at(face / 2, face % 2, face % 2 * 4);
-    }
     if (kind == 2) add_mesh(h);
 }
 

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 
 #define PI 3.14159265358979323846

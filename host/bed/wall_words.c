@@ -235,8 +235,7 @@ static char cut_item(char **text) {
 }
 
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]) {
-    char *item = *text, *number[3];
-    char stop = cut_item(text);
+    char *item = *text, *number[3], stop = cut_item(text);
     if (strchr(item, '=') || (find_key(item) && !wall_words_shape(item))) { /* as before 0.3.0, or behind a comma */
         snprintf(fault, WALL_FAULT,
                  "%.60s is not how a wall is written: zmin:at=VALUE:temperature=T:emissivity=E, zmax:open, "

@@ -58,9 +58,8 @@ static const struct option factors_table[] = {
     {OPTION_EMISSIVITY(struct factors_request, emissivity)},
     {OPTION_WALL},
     {0, "error", "E",
-     "error allowed in every row, estimated, 1e-7 to 1; directions and rays are added until it "
-     "is met; exchange factors "
-     "from 1e-5 on [none]",
+     "error allowed in every row, estimated, 1e-7 to 1; directions and rays are added until it is met; exchange "
+     "factors from 1e-5 on [none]",
      TO_NUMBER(struct factors_request, error, 1e-7, 1)},
     {0, "method", "NAME", "beam (parallel beams), cast (quasi-random rays) or mc (random rays) [beam]",
      TO_FUNCTION(take_method, struct factors_request, method)},
@@ -74,8 +73,7 @@ static const struct option factors_table[] = {
      TO_NUMBER(struct factors_request, options.drop, 0, 1)},
     {OPTION_SOLID_CONDUCTIVITY(struct factors_request, solid)},
     {0, "temperature", "T",
-     "mean temperatures of the spheres, for --solid-conductivity; a number, or TYPE:T,..., or a "
-     "column of the file",
+     "mean temperatures of the spheres, for --solid-conductivity; a number, or TYPE:T,..., or a column of the file",
      TO_FUNCTION(temperature_option, struct factors_request, temperature)},
     OPTIONS_INPUT,
     {OPTION_BED_OUTPUT("write the matrix (.csv .mtx .npz .json, - for standard output) or the "

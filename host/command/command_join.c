@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "command/commands.h"

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/coarse_map.h"
 
 #define CUTOFF_RADII 8    /* least default cutoff: the largest diameter plus this many mean radii */
 #define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */

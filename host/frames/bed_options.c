@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include "bed/bed_scene.h"
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "frames/beyond.h"
 #include "plot/gnuplot.h"

@@ -144,12 +144,11 @@ static int given_sides(const struct walls *walls, double zero, struct given *giv
 static int leave_out(const char *option, const struct quantity *number, const double *others, uint32_t n,
                      double *values) {
     bool used = false;
-    for (uint32_t i = 0; i < n; ++i) {
+    for (uint32_t i = 0; i < n; ++i)
         if (isnan(others[i]))
             used = true;
         else
             values[i] = NAN;
-    }
     if (used) return STATUS_OK;
     return message(
         STATUS_USAGE,

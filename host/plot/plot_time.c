@@ -18,10 +18,9 @@ int plot_time(const struct output *output, const char *name, const struct time_p
             "' noenhanced\n"
             "set xlabel 'time [s]'; set ylabel 'temperature [K]'; set grid; set key top right\n"
             "set xrange [%.9g:%.9g]\n"
-            "plot $time using 1:3:4 with filledcurves fc '#c8553d' fs transparent solid 0.25 noborder "
-            "title 'coldest to hottest', "
-            "'' using 1:3 with lines lw 1 lc '#c8553d' notitle, '' using 1:4 with lines lw 1 lc '#c8553d' notitle, "
-            "'' using 1:2 with lines lw 3 lc '#222222' title 'mean'\n",
+            "plot $time using 1:3:4 with filledcurves fc '#c8553d' fs transparent solid 0.25 noborder title 'coldest "
+            "to hottest', '' using 1:3 with lines lw 1 lc '#c8553d' notitle, '' using 1:4 with lines lw 1 lc '#c8553d' "
+            "notitle, '' using 1:2 with lines lw 3 lc '#222222' title 'mean'\n",
             point[0].time, point[points - 1].time);
     return gnuplot_end(&gnuplot);
 }

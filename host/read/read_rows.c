@@ -14,7 +14,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "couple/rows_file.h"

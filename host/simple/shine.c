@@ -26,8 +26,7 @@ struct shine_tasks {
 /* Allocates the arrays, in one block but for kept and ray. hits.spots is the bed's. */
 static int begin_shine(struct shine_tasks *t) {
     fibrad_bed *bed = t->bed;
-    const size_t patches = fibrad_heat_patches(bed->heat);
-    const size_t surfaces = bed->facts.spheres + t->walls;
+    const size_t patches = fibrad_heat_patches(bed->heat), surfaces = bed->facts.spheres + t->walls;
     double *block = calloc(3 * patches + 4 * surfaces + 2, sizeof *block);
     t->kept = calloc(fibrad_heat_shine_tasks(bed->heat) + (size_t)1, sizeof *t->kept);
     if (!block || !t->kept) {

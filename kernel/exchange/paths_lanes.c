@@ -1,7 +1,6 @@
 /* paths_lanes.c - traces paths. Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
-#include "base/elementary.h"
 #include "base/lanes/turn.h"
 #include "exchange/reemission.h"
 #include "exchange/paths.h"
@@ -183,8 +182,7 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
 static void meet_known(const fibrad_paths *paths, const fibrad_segment *segment, fibrad_hit *hit) {
     const fibrad_scene *scene = paths->tracer->scene;
     const double unit = scene->r[paths->place], r = scene->r[segment->sphere] * paths->inverse;
-    const double *c = segment->centre, *w = segment->w, *n = segment->n;
-    const double e[3] = {c[0] - n[0], c[1] - n[1], c[2] - n[2]};
+    const double *c = segment->centre, *w = segment->w, *n = segment->n, e[3] = {c[0] - n[0], c[1] - n[1], c[2] - n[2]};
     const double along = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
     const double across[3] = {e[0] - along * w[0], e[1] - along * w[1], e[2] - along * w[2]};
     const double square = r * r - (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);

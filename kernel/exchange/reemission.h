@@ -19,7 +19,6 @@
 #ifndef FIBRAD_EXCHANGE_REEMISSION_H
 #define FIBRAD_EXCHANGE_REEMISSION_H
 
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 

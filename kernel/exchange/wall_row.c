@@ -2,7 +2,6 @@
  *
  * The paths come in parts. Each part begins at evenly spread points, which are moved at random, part by part. So the
  * spread of the parts tells the error of their mean. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "exchange/paths.h"
 #include "row/row.h"
@@ -109,8 +108,7 @@ int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t 
         return FIBRAD_OK;
     }
 
-    const bool nodes = rule->node_emissivity != NULL;
-    const bool black = rule->emissivity == NULL && rule->wall_emissivity == NULL;
+    const bool nodes = rule->node_emissivity != NULL, black = rule->emissivity == NULL && rule->wall_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;

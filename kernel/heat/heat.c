@@ -1,7 +1,6 @@
 /* heat.c - lays out a heat problem, moves it to another scene, and has its beams followed. SPDX-License-Identifier: MIT
  */
 #include "base/arena.h"
-#include "base/constants.h"
 #include "base/dispatch.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"

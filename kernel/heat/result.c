@@ -1,5 +1,4 @@
 /* result.c - hands out powers, temperatures, and fluxes of triangles. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "heat/errors.h"
 #include "patches/subdivision.h"
 #include "patches/wall_patch.h"

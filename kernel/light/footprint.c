@@ -5,7 +5,6 @@
  * v. So the cross-section of the light that enters by one plane has straight sides. The same holds for light that ends
  * on one plane. */
 #include "light/footprint.h"
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/vector.h"
 #include "sample/direction.h"

@@ -7,9 +7,14 @@
 #define FIBRAD_MESH_MESH_H
 
 #include "base/arena.h"
-#include "base/constants.h"
-#include "base/port.h"
 #include "fibrad_mesh.h"
+
+/* The largest coordinate, in smallest radii or half lengths of all meshes together. It leaves room for the digits of a
+ * radius. */
+#define FIBRAD_COORDINATE_MAX 0x1p45
+
+/* No search goes farther than this many periods along a periodic axis. */
+#define FIBRAD_PERIODS 100.0
 
 #define FIBRAD_NO_SIDE UINT32_MAX
 #define FIBRAD_NO_MESH UINT8_MAX

@@ -7,7 +7,6 @@
 #include "patches/pencils.h"
 #include "patches/wall_patch.h"
 #include "base/arena.h"
-#include "base/constants.h"
 #include "pair/free_pair.h"
 #include "patches/sphere_patch.h"
 

@@ -1,5 +1,4 @@
 /* subdivision.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"

@@ -1,5 +1,4 @@
 /* wall_patch.c - the patches of walls and meshes, and the rays that leave them. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"

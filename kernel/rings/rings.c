@@ -4,7 +4,6 @@
  * The flux eps v and light that was absorbed besides are conducted: E = E0 + S (eps v + a), S being `spread` times the
  * unevenness. H is what arrives from elsewhere plus the factors to the rings of the other sphere times their J. This is
  * a linear system in v of both spheres. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/linear.h"
 #include "rings/rings.h"

@@ -2,7 +2,6 @@
 #ifndef FIBRAD_SCENE_SCENE_H
 #define FIBRAD_SCENE_SCENE_H
 
-#include "base/port.h"
 #include "mesh/mesh.h"
 #include "scene/slots.h"
 

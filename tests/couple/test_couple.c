@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/coarse_map.h"
+#include "couple/ranks/ranks.h"
 #include "couple/rows_file.h"
 
 static int rank, ranks, checks, failures;

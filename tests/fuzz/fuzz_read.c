@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "read/read.h"
-#include "papers/furnace/read_furnace.h"
+#include "papers/furnace/furnace.h"
 #include "cli/targets.h"
 #include "mesh/meshes.h"
 #include "text/read_curve.h"

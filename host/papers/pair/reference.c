@@ -58,8 +58,7 @@ static double cap(double q) {
 /* Integral of the ordinate of an arc from x1 to x2: the trapezium below its chord, and the cap. */
 static double below(const struct slicer *s, const struct arc *arc, double x1, double x2) {
     const struct disc *disc = &s->disc[arc->disc];
-    const double y1 = ordinate(disc, x1), y2 = ordinate(disc, x2);
-    const double chord = sqrt(square(x2 - x1) + square(y2 - y1)) / 2;
+    const double y1 = ordinate(disc, x1), y2 = ordinate(disc, x2), chord = sqrt(square(x2 - x1) + square(y2 - y1)) / 2;
     return (x2 - x1) * (disc->v + arc->half * (y1 + y2) / 2) + arc->half * square(disc->r) * cap(chord / disc->r);
 }
 

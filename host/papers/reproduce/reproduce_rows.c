@@ -2,7 +2,6 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "papers/reproduce/reproduce.h"
 #include "simple/heap.h"

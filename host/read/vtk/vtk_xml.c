@@ -54,8 +54,7 @@ static bool is_tag(const struct tag *tag, const char *name) {
 
 /* Finds the next tag and moves behind it. False: there is none. */
 static bool next_tag(struct xml *xml, struct tag *tag) {
-    const char *last = xml->grid->end;
-    const char *open = memchr(xml->at, '<', (size_t)(last - xml->at));
+    const char *last = xml->grid->end, *open = memchr(xml->at, '<', (size_t)(last - xml->at));
     if (!open) return false;
     char quote = 0;
     for (const char *c = tag->text = open + 1; c < last; ++c) {
