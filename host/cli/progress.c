@@ -36,12 +36,8 @@ int progress_stage(void *context, const char *stage, uint64_t done, uint64_t tot
     const double now = progress_clock();
     if (done == 0) {
         progress_stop(progress);
-        *progress = (struct progress){.quiet = progress->quiet,
-                                      .on = !progress->quiet && isatty(STDERR_FILENO),
-                                      .what = stage,
-                                      .total = total,
-                                      .begun = now,
-                                      .shown = now};
+        progress->on = !progress->quiet && isatty(STDERR_FILENO);
+        progress->what = stage, progress->total = total, progress->begun = progress->shown = now;
     }
     if (total > 0 && done == total) progress_stop(progress);
     if (progress->on && now - progress->shown >= 0.1) {

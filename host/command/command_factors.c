@@ -336,11 +336,8 @@ static int write_matrix(struct factors_request *request, struct bed *bed) {
     int status = bed_options_make(&request->bed, bed, &request->walls, &made);
     if (!status) status = bed_options_factors(&request->bed, bed, &request->walls, made, &request->options, &factors);
     if (!status && request->bed.wall_vtp && !request->emissivity.given) status = find_views(request, bed, made, &views);
-    struct contents what = {.factors = factors,
-                            .wanted = request->options.wanted,
-                            .walls = &request->walls,
-                            .grey = request->options.exchange,
-                            .of_sides = &views};
+    struct contents what = {.factors = factors, .walls = &request->walls, .of_sides = &views};
+    what.wanted = request->options.wanted, what.grey = request->options.exchange;
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)
         status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);

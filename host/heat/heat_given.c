@@ -1,5 +1,5 @@
 /* heat_given.c - what is given of each sphere and wall: its temperature or its power. SPDX-License-Identifier: MIT */
-#include "heat/heat_given.h"
+#include "heat/heat.h"
 
 #include <gsl/gsl_math.h>
 #include <math.h>

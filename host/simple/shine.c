@@ -185,10 +185,8 @@ static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
     sources.emissivity = s->absorptivity, sources.wall_emissivity = s->wall_absorptivity;
     sources.tolerance = s->tolerance > 0 ? s->tolerance : LIGHT_TOLERANCE;
     sources.light = t->hits.light;
-    fibrad_heat_result solved = {.power = result->absorbed,
-                                 .wall_power = result->wall_absorbed,
-                                 .power_error = result->absorbed_error,
-                                 .wall_error = result->wall_absorbed_error};
+    fibrad_heat_result solved = {.power = result->absorbed, .wall_power = result->wall_absorbed};
+    solved.power_error = result->absorbed_error, solved.wall_error = result->wall_absorbed_error;
     int status = fibrad_bed_solve_now(bed, &sources, &solved);
     if (!status) status = fibrad_heat_sum_light(bed->heat, t->hits.spots, spots, spots + bed->facts.spheres);
     const struct arrived arrived = arrived_of(t);

@@ -2,7 +2,6 @@
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
-#include "exchange/reemission.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
 #include "scene/surroundings.h"
@@ -383,14 +382,9 @@ static void leave_scene(fibrad_paths *paths, const struct grey_path *path, uint3
 }
 
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
-    struct grey_path path = {.k = k,
-                             .part = (uint32_t)(k % 4),
-                             .sobol = sobol,
-                             .own = {fibrad_random_ahead(paths->stream, 8 + k)},
-                             .weight = 1,
-                             .least = ROULETTE_WEIGHT,
-                             .place = paths->place,
-                             .triangle = FIBRAD_NO_SIDE};
+    struct grey_path path = {.k = k, .part = (uint32_t)(k % 4), .own = {fibrad_random_ahead(paths->stream, 8 + k)}};
+    path.sobol = sobol, path.weight = 1, path.least = ROULETTE_WEIGHT, path.place = paths->place;
+    path.triangle = FIBRAD_NO_SIDE;
     const uint32_t first = paths->segments != NULL && k < paths->segments->length;
     double w[3];
     if (first) {

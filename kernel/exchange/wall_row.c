@@ -114,19 +114,11 @@ int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t 
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;
     const uint32_t count = (wanted + FIBRAD_WALL_PARTS - 1) / FIBRAD_WALL_PARTS;
     const uint64_t turn = (uint64_t)slot * FIBRAD_WALL_PARTS + part; /* streams of walls count down, those of ids up */
-    const fibrad_paths none = {.tracer = fibrad_tracer_of(space, scene),
-                               .place = FIBRAD_NONE,
-                               .from = slot,
-                               .sobol = &sobol,
-                               .emissivity = nodes ? rule->node_emissivity : rule->emissivity,
-                               .surface = rule->emissivity,
-                               .conductivity = nodes ? rule->conductivity : NULL,
-                               .wall_emissivity = wall_emissivity,
-                               .boxed = black && is_box(scene),
-                               .stream = fibrad_random_start(rule->seed, UINT64_MAX - turn),
-                               .first = true,
-                               .reflected = reflected,
-                               .back = UINT32_MAX};
+    fibrad_paths none = {.tracer = fibrad_tracer_of(space, scene), .place = FIBRAD_NONE, .from = slot, .sobol = &sobol};
+    none.emissivity = nodes ? rule->node_emissivity : rule->emissivity, none.surface = rule->emissivity;
+    none.conductivity = nodes ? rule->conductivity : NULL, none.wall_emissivity = wall_emissivity;
+    none.boxed = black && is_box(scene), none.stream = fibrad_random_start(rule->seed, UINT64_MAX - turn);
+    none.first = true, none.reflected = reflected, none.back = UINT32_MAX;
     fibrad_paths paths = none;
     const uint64_t followed = fibrad_paths_begin(&paths, count);
     work->triangle = paths.back;

@@ -7,7 +7,6 @@
 #include "patches/pencils.h"
 #include "patches/sphere_patch.h"
 #include "heat/sweep.h"
-#include "patches/wall_patch.h"
 #include "sample/direction.h"
 
 #define HEAT_THIN_MAX  2u

@@ -7,7 +7,7 @@
  * middle, and x is counted along the line. So a line needs no list of crossings, only a sum over them. x is limited to
  * the stretch between the neighbouring lines. */
 #include "base/elementary.h"
-#include "light/footprint.h"
+#include "light/light.h"
 
 /* Where an arc leaves the inner side of a line and where it enters it, each at most once. Places are relative to the
  * arc's centre. */

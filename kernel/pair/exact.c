@@ -34,8 +34,6 @@ static const double weight[NODES] = {
     0.16635079170396431,    0.19369790800517065,    0.17789548248976863,    0.12191628197717333,
     0.057787721995975301,   0.016594018536865064,   0.0021032672879675493,  3.569535250773377e-05};
 
-static const double pi = 3.14159265358979323846;
-
 /* The sum of LANES interleaved partial sums. All compilers and vector lengths add in the same order. */
 static double fold(const double sum[LANES]) { return (sum[0] + sum[2]) + (sum[1] + sum[3]); }
 
@@ -60,7 +58,7 @@ static double mean_overlapping(double e, double q) {
  * 2 (atan t - t) + 2 t^3 (3 + t^2)/(1 + t^2)^2 with atan t = 4 atan u, u = tan(a/8) <= 0.2. So no digits cancel in a
  * thin segment. */
 static double lens_segment(double t) {
-    if (t > 1) return pi - lens_segment(1 / t);
+    if (t > 1) return FIBRAD_PI - lens_segment(1 / t);
     double half = t / (1 + fibrad_sqrt(1 + t * t)), u = half / (1 + fibrad_sqrt(1 + half * half));
     double v = u * u, tail = 0; /* atan u = u + u^3 tail */
     for (int n = 25; n >= 3; n -= 2) tail = tail * -v - 1.0 / n;
@@ -85,8 +83,8 @@ static double exchange_overlapping(double R, double r, double gap) {
         R / r * (R / r * lens_segment(fibrad_sqrt(g / a * (b / c)))) + lens_segment(fibrad_sqrt(g / b * (a / c)));
     double even = R / d * (R / d) * lens_segment(fibrad_sqrt(a / g * (b / c))), chord = d / r * w2;
     double e = g / a * fibrad_min(c / b, 1e300); /* for larger ratios the chord is 0 */
-    double odd = pi / 16 * chord * chord * w * mean_overlapping(e, w2);
-    return (lens + (even - odd)) / (2 * pi);
+    double odd = FIBRAD_PI / 16 * chord * chord * w * mean_overlapping(e, w2);
+    return (lens + (even - odd)) / (2 * FIBRAD_PI);
 }
 
 /* Radii within these bounds leave room for sums and ratios. */

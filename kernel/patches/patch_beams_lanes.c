@@ -7,7 +7,6 @@
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
 #include "patches/sphere_patch.h"
-#include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"

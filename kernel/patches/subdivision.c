@@ -4,7 +4,6 @@
 #include "base/vector.h"
 #include "patches/subdivision.h"
 #include "patches/sphere_patch.h"
-#include "patches/wall_patch.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 

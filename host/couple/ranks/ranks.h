@@ -16,25 +16,23 @@ typedef struct fibrad_block {
     size_t size; /* bytes */
 } fibrad_block;
 
-/* Makes room for `count` elements of `size` bytes and keeps the contents. Returns FIBRAD_OK, or _E_MEMORY with the
- * block unchanged. */
+/* Gives the block another size. Returns FIBRAD_OK, or _E_MEMORY with the block unchanged. */
+static inline int fibrad_block_resize(fibrad_block *block, size_t size) {
+    void *at = realloc(block->at, size);
+    if (!at) return FIBRAD_E_MEMORY;
+    *block = (fibrad_block){at, size};
+    return FIBRAD_OK;
+}
+
+/* Makes room for `count` elements of `size` bytes and keeps the contents. Errors: as fibrad_block_resize. */
 static inline int fibrad_block_fit(fibrad_block *block, size_t count, size_t size) {
     const size_t needed = (count + 1) * size; /* never NULL */
-    if (needed > block->size) {
-        void *at = realloc(block->at, needed + needed / 4);
-        if (!at) return FIBRAD_E_MEMORY;
-        block->at = at;
-        block->size = needed + needed / 4;
-    }
-    return FIBRAD_OK;
+    return needed > block->size ? fibrad_block_resize(block, needed + needed / 4) : FIBRAD_OK;
 }
 
 /* Gives back the memory that is more than `count` elements of `size` bytes need. */
 static inline void fibrad_block_trim(fibrad_block *block, size_t count, size_t size) {
-    void *at = realloc(block->at, (count + 1) * size);
-    if (!at) return;
-    block->at = at;
-    block->size = (count + 1) * size;
+    (void)fibrad_block_resize(block, (count + 1) * size);
 }
 
 static inline void fibrad_block_free(fibrad_block *block) {

@@ -2,6 +2,8 @@
 #ifndef FIBRAD_TURN_H
 #define FIBRAD_TURN_H
 
+#include "base/port.h"
+
 /* sin(2 pi t) for t in [-1/4, 1/4], by its series to the 19th power: to 1e-15. */
 static inline vd vd_sine_quarter(vd t) {
     static const double ratio[] = {1. / (18 * 19), 1. / (16 * 17), 1. / (14 * 15), 1. / (12 * 13), 1. / (10 * 11),
