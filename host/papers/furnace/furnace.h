@@ -1,5 +1,4 @@
-/* furnace.h - boxes with a participating medium: methods, files, pictures, published cases. SPDX-License-Identifier:
- * MIT */
+/* furnace.h - boxes with a medium: methods, files, pictures, published cases. SPDX-License-Identifier: MIT */
 #ifndef FURNACE_H
 #define FURNACE_H
 
