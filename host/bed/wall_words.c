@@ -107,14 +107,8 @@ bool wall_words_shape(const char *word) { return find_shape(word) < SHAPES; }
 static bool begin_wall(struct wall_words *wall, const char *word, unsigned allowed, char fault[WALL_FAULT]) {
     const int k = find_shape(word);
     if (k == SHAPES && !(allowed & WALL_NAMES_TOO)) return wall_words_no_shape(word, fault);
-    *wall = (struct wall_words){.shape = k < SHAPES ? shapes[k].shape : WALL_NAMED,
-                                .word = word,
-                                .mesh.scale = 1,
-                                .temperature = NAN,
-                                .power = NAN,
-                                .emissivity = 1,
-                                .absorptivity = NAN,
-                                .gas = NAN};
+    *wall = (struct wall_words){.shape = k < SHAPES ? shapes[k].shape : WALL_NAMED, .word = word, .emissivity = 1};
+    wall->temperature = wall->power = wall->absorptivity = wall->gas = NAN, wall->mesh.scale = 1;
     if (wall->shape == WALL_PLANE)
         wall->wall =
             (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {shapes[k].number / 2, shapes[k].number % 2, NAN}};
@@ -239,8 +233,7 @@ static char cut_item(char **text) {
 }
 
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]) {
-    char *item = *text, *number[3];
-    char stop = cut_item(text);
+    char *item = *text, *number[3], stop = cut_item(text);
     if (strchr(item, '=') || (find_key(item) && !wall_words_shape(item))) { /* as before 0.3.0, or behind a comma */
         snprintf(fault, WALL_FAULT,
                  "%.60s is not how a wall is written: zmin:at=VALUE:temperature=T:emissivity=E, zmax:open, "

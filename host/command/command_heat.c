@@ -58,8 +58,7 @@ static const struct option heat_table[] = {
      TO_FUNCTION(option_points, struct heat, config.points)},
     {0, "wall-rays", "N",
      "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [" TEXT_OF(
-         FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
-                                   "beams or patches, or insulated walls]",
+         FIBRAD_WALL_RAYS_DEFAULT) ", more with many beams or patches, or insulated walls]",
      TO_COUNT(struct heat, config.wall_rays, 1, FIBRAD_WALL_RAYS_MAX)},
     {OPTION_WALL_VTP},
     OPTIONS_INPUT_RARE,

@@ -1,6 +1,6 @@
 /* film.c - convection: heat that spheres and walls exchange with gas of a given temperature.
  * SPDX-License-Identifier: MIT */
-#include "heat/film.h"
+#include "heat/heat.h"
 
 #include <gsl/gsl_math.h>
 #include <stdlib.h>

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 

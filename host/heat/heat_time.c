@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 #include "plot/plot_heat.h"

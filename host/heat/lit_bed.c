@@ -53,16 +53,11 @@ int light_absorb(struct heat *h, double unit, fibrad_heat_sources *sources) {
     fibrad_light scaled[LIGHTS_MAX];
     if (!options) return FIBRAD_OK;
     for (uint32_t k = 0; k < options->lights; ++k) scaled[k] = options->light[k], scaled[k].flux *= unit;
-    fibrad_light_sources light = {.lights = options->lights,
-                                  .light = scaled,
-                                  .absorptivity = state->absorptivity,
-                                  .wall_absorptivity = state->of_walls};
-    state->result = (fibrad_light_result){.absorbed = state->absorbed,
-                                          .absorbed_first = state->first,
-                                          .absorbed_error = state->error,
-                                          .wall_absorbed = state->wall,
-                                          .wall_absorbed_first = state->wall_first,
-                                          .wall_absorbed_error = state->wall_error};
+    fibrad_light_sources light = {.lights = options->lights, .light = scaled, .absorptivity = state->absorptivity};
+    light.wall_absorptivity = state->of_walls;
+    state->result = (fibrad_light_result){.absorbed = state->absorbed, .wall_absorbed = state->wall};
+    state->result.absorbed_first = state->first, state->result.wall_absorbed_first = state->wall_first;
+    state->result.absorbed_error = state->error, state->result.wall_absorbed_error = state->wall_error;
     const int status = fibrad_bed_shine(h->made, &light, &state->result);
     state->failed = status;
     if (!status) add_absorbed(h, sources);

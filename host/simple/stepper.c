@@ -323,14 +323,10 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     fibrad_stepping *t = &bed->stepping;
     const uint32_t n = bed->facts.spheres, walls = bed->facts.walls;
     fibrad_span now = *span;
-    struct stepper m = {.bed = bed,
-                        .t = t,
-                        .given = sources,
-                        .span = &now,
-                        .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
-                        .sources = *sources,
-                        .result = {.power = t->power, .temperature = t->found},
-                        .stage_walls = {t->wall_stage + walls, t->wall_stage + 2 * (size_t)walls}};
+    struct stepper m = {.bed = bed, .t = t, .given = sources, .span = &now, .sources = *sources};
+    m.tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE;
+    m.result.power = t->power, m.result.temperature = t->found;
+    for (size_t k = 0; k < 2; ++k) m.stage_walls[k] = t->wall_stage + (k + 1) * walls;
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.storage = t->storage, m.sources.reference = t->guess;
     m.sources.wall_temperature = t->wall_stage;

@@ -1,9 +1,8 @@
 /* stepping.c - memory of steps in time. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdlib.h>
 
 #include "simple/bed.h"
-
-#define PI 3.14159265358979323846
 
 /* Allocates all arrays, in one block. */
 static int take_arrays(fibrad_bed *bed) {
@@ -26,7 +25,7 @@ static int take_arrays(fibrad_bed *bed) {
 int fibrad_stepping_make(fibrad_bed *bed) {
     const int status = bed->stepping.area ? FIBRAD_OK : take_arrays(bed);
     for (uint32_t i = 0; i < bed->facts.spheres && !status; ++i)
-        bed->stepping.area[i] = 4 * PI * bed->spheres.r[i] * bed->spheres.r[i];
+        bed->stepping.area[i] = 4 * M_PI * bed->spheres.r[i] * bed->spheres.r[i];
     return status;
 }
 

@@ -7,7 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"

@@ -1,7 +1,6 @@
 /* write_dump.c - heat as a LAMMPS text dump, which OVITO and fibrad itself read. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"

@@ -5,7 +5,6 @@
 #include <inttypes.h>
 #include <math.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"

@@ -2,7 +2,6 @@
  * SPDX-License-Identifier: MIT */
 #include "contact/contact.h"
 
-#include "base/elementary.h"
 #include "base/port.h"
 
 #define WARM_TOLERANCE 1e-7   /* of a linear system, relative */

@@ -6,7 +6,6 @@
  *     apart + resistance times the power that enters,
  *
  * apart being due to light and to other contacts. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/vector.h"
 #include "heat/solution.h"

@@ -251,8 +251,7 @@ static few_links few_of_wall(const fibrad_heat *heat, const fibrad_heat_errors *
     double rays = 0;
     for (uint32_t r = sent->first; r < sent->first + sent->count; r++)
         rays += (heat->ray[r].to < fibrad_heat_others(heat) ? 1 : 2) * heat->ray[r].area;
-    const double share = area > 0 ? fibrad_min(1, rays / area) : 0;
-    const double patch = fibrad_min(heat->patch_area, area);
+    const double share = area > 0 ? fibrad_min(1, rays / area) : 0, patch = fibrad_min(heat->patch_area, area);
     return (few_links){share > 0 ? FEW_ON_WALLS * share * errors->dim[1] / (2 * sent->density * patch) : 0,
                        FEW_ON_WALLS * (1 - share) * errors->dim[0] * heat->config.patches / heat->beams};
 }
@@ -266,8 +265,7 @@ static double few_error(const fibrad_heat *heat, const fibrad_heat_errors *error
 /* ---- powers ----------------------------------------------------------------------------------------------------- */
 
 static double own_sample(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
-    const double eps = heat->sources.emissivity[b];
-    const double few = few_error(heat, errors, b);
+    const double eps = heat->sources.emissivity[b], few = few_error(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
     return squared(eps) * sampled_error(heat, errors, b) + sphere + few * squared(heat->solution.power[b]) +

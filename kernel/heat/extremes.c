@@ -3,7 +3,6 @@
  * Near a neighbour temperatures differ over lengths much shorter than a patch. So places that face a neighbour are
  * looked at in rings, together with the neighbour (rings/rings.h). Elsewhere the rings are about the hottest or coldest
  * patch, and all light is that of patches. */
-#include "base/constants.h"
 #include "base/vector.h"
 #include "heat/solution.h"
 #include "patches/subdivision.h"

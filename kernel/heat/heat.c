@@ -1,14 +1,12 @@
 /* heat.c - lays out a heat problem, moves it to another scene, and has its beams followed. SPDX-License-Identifier: MIT
  */
 #include "base/arena.h"
-#include "base/constants.h"
 #include "base/dispatch.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
 #include "patches/sphere_patch.h"
 #include "heat/sweep.h"
-#include "patches/wall_patch.h"
 #include "sample/direction.h"
 
 #define HEAT_THIN_MAX  2u

@@ -1,8 +1,6 @@
 /* result.c - hands out powers, temperatures, and fluxes of triangles. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "heat/errors.h"
 #include "patches/subdivision.h"
-#include "patches/wall_patch.h"
 #include "scene/walls.h"
 
 /* Writes a value that is wanted. */

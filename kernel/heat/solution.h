@@ -2,7 +2,6 @@
 #ifndef FIBRAD_HEAT_SOLUTION_H
 #define FIBRAD_HEAT_SOLUTION_H
 
-#include "base/constants.h"
 #include "patches/problem.h"
 
 /* Whether a body is an insulated wall. */

@@ -349,12 +349,11 @@ static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources 
 /* Sets emissivity and emission of a body. The radiosities of an earlier solution are shifted by the change of emission.
  * Their detail is taken off, since the coarser level comes first. */
 static void set_emission(fibrad_heat *heat, uint32_t b, double eps, double emission) {
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         if (heat->solution.warm && (eps < 1 || fibrad_heat_conducts(heat, b)))
             heat->solution.radiosity[a] += emission - heat->sources.emission[b] - heat->solution.detail[a];
         else
             heat->solution.radiosity[a] = emission, heat->solution.detail[a] = 0;
-    }
     heat->sources.emissivity[b] = eps, heat->sources.emission[b] = emission;
     heat->sources.given_power[b] = 0, heat->sources.storage[b] = -1;
 }

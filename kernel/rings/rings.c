@@ -5,7 +5,6 @@
  * unevenness. H is what arrives from elsewhere plus the factors to the rings of the other sphere times their J. This is
  * a linear system in v of both spheres. A film takes away the part B of the flux that E - E0 would have in degree 1, B
  * being h R/k: S (1 + B S)^-1 stands for S. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/linear.h"
 #include "rings/rings.h"
