@@ -17,7 +17,7 @@ build() {
     case $2 in
     couple) goals="build/couple/test_couple build/couple/example" ;;
     liggghts) goals="build/couple/fibrad_liggghts build/fibrad" ;;
-    *) goals=build/tests/test_$2 ;;
+    *) goals="build/tests/test_$2 $(grep -q '"program.h"' "tests/test_$2.c" && echo build/fibrad)" ;;
     esac
     # shellcheck disable=SC2086  # a list of goals
     $MAKE -s -C "$1" BUILD=build CC="$CC" CFLAGS=-O1 ISAS=scalar $goals >"$1/log" 2>&1
