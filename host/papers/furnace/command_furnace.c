@@ -273,9 +273,7 @@ static int furnace_compute_and_write(const struct request *request, const fibrad
         status = furnace_plot(&plot, name, run, furnace_is_measured(request), request->number);
     }
     if (!status) furnace_print(request, run, json.file);
-    status = output_close(&out, status);
-    status = output_close(&json, status);
-    return output_close(&plot, status);
+    return output_close(&plot, output_close(&json, output_close(&out, status)));
 }
 
 int command_furnace(int argc, char **argv) {

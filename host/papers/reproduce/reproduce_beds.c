@@ -140,16 +140,12 @@ static double processor_seconds(void) { return (double)clock() / CLOCKS_PER_SEC;
 static int seconds_of(struct rows *rows, const struct row_rule *method, double *seconds) {
     const double begun = processor_seconds();
     uint32_t times = 0;
-    do {
-        for (uint32_t i = 0; i < rows->n; ++i) {
-            fibrad_row row;
-            const int status = rows_row(rows, method, i, &row);
-            if (status) return status;
-        }
-        ++times;
-    } while (processor_seconds() - begun < 0.2);
+    int status = STATUS_OK;
+    fibrad_row row;
+    for (; processor_seconds() - begun < 0.2 && !status; ++times)
+        for (uint32_t i = 0; i < rows->n && !status; ++i) status = rows_row(rows, method, i, &row);
     *seconds = (processor_seconds() - begun) / times;
-    return STATUS_OK;
+    return status;
 }
 
 /* Finds the fewest directions, in steps of a quarter, whose error is at most `error`. */
