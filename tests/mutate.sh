@@ -12,7 +12,7 @@ tests="base pair_exact surface matrix scene direction areas furnace surface_row 
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-1200}"
 # shellcheck disable=SC3045  # dash has it
-ulimit -t 60 # of processor time: a loaded machine is no failure
+ulimit -t 30 # of processor time: a loaded machine is no failure
 
 # build TREE TEST: objects that the break does not change exist already
 build() {
