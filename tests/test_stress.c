@@ -277,8 +277,7 @@ TEST(random_scenes) {
     report("random scenes: rows that differ with the work memory", seen.other_bits, 0);
     report("random scenes: sum + escaped - 1", seen.closure, 1e-12);
     report("random scenes: raw row sums above 1 by", seen.sum, 1e-12);
-    report("random scenes: averaged row sums above 1 by", seen.averaged,
-           1e-11); /* roundings of large spheres, times the ratio of areas */
+    report("random scenes: averaged row sums above 1 by", seen.averaged, 1e-12);
     report("random scenes: closed row sums above 1 by", seen.closed, 1e-14);
     report("random scenes: closed matrices, sum + escaped - 1", seen.total, 1e-14);
     report("random scenes: closed matrices, reciprocity", seen.reciprocity, 1e-14);

@@ -130,7 +130,7 @@ int write_heat_json(FILE *file, const struct contents *what) {
         fprintf(file, "%s\"%s\":{\"T_K\":", k == 0 && walls > 0 ? ",\"walls\":{" : ",", name);
         text_json_real(file, value[HEAT_TEMPERATURE]);
         for (int c = HEAT_POWER; c < HEAT_COLUMNS; ++c)
-            if (column[c].value && (c < HEAT_INSIDE || c >= HEAT_PARTS)) json_entry(file, column[c].name, value[c]);
+            if ((c < HEAT_INSIDE || c >= HEAT_PARTS) && column[c].value) json_entry(file, column[c].name, value[c]);
         putc('}', file);
     }
     fputs("}\n", file);

@@ -259,6 +259,8 @@ static int furnace_compute_and_write(const struct request *request, const fibrad
     if (!status) status = output_open(&plot, request->plot);
     if (!status) status = output_open(&json, request->json);
     if (!status) status = furnace_run(config, &request->run, run);
+    if (!status && run->cold)
+        status = message(STATUS_INPUT, "no T > 0 in some cells: more bundles are needed, or a weaker sink");
     if (!status && request->out)
         (output_ends(request->out, ".vti") ? write_furnace_vti : write_furnace_csv)(out.file, run);
     if (!status && request->plot) {
@@ -266,9 +268,7 @@ static int furnace_compute_and_write(const struct request *request, const fibrad
         status = furnace_plot(&plot, name, run, furnace_is_measured(request), request->number);
     }
     if (!status) furnace_print(request, run, json.file);
-    status = output_close(&out, status);
-    status = output_close(&json, status);
-    return output_close(&plot, status);
+    return output_close(&plot, output_close(&json, output_close(&out, status)));
 }
 
 int command_furnace(int argc, char **argv) {

@@ -44,6 +44,7 @@ struct furnace_run {
     double change;    /* largest change of T in the last outer iteration [K] */
     uint64_t bundles; /* bundles traced */
     double seconds;   /* time of computing [s] */
+    bool cold;        /* some cell has no T > 0: more bundles are needed, or a weaker sink */
     struct progress progress;
 };
 

@@ -207,9 +207,7 @@ int furnace_run(const fibrad_furnace_config *config, const struct furnace_option
     if (status) return status;
     status = options->method == FURNACE_MC ? furnace_monte_carlo(run, options) : furnace_heat_flux(run, options);
     run->seconds = progress_clock() - begun;
-    for (size_t k = 0; k < furnace_cells(run) && !status; k++)
-        if (!(run->at.e[k] > 0))
-            status = message(STATUS_INPUT, "no T > 0 in some cells: more bundles are needed, or a weaker sink");
+    for (size_t k = 0; k < furnace_cells(run) && !status; k++) run->cold |= !(run->at.e[k] > 0);
     return status;
 }
 
