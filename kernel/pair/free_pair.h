@@ -23,7 +23,7 @@ typedef struct fibrad_free_pairs {
  * In scenes of few spheres all pairs are tried, in others only near ones. Rows of which no
  * window is open have none, since only walls and surroundings can take the difference. scale: factor over the sums of
  * entries. Entries that find no room are counted in entries.missed. */
-fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale);
+fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, bool hidden);
 
 /* Gives the segments that meet a sphere of a free pair their share of its factor, and those that meet no sphere their
  * share of the rest. If no segment meets a sphere of a free pair, one more segment does. Error: FIBRAD_E_WORK: there is
