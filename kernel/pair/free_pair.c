@@ -44,8 +44,10 @@
 #define LINES        64u
 #define TURN         51u
 #define FEW_WINDOWS  8.0
-#define FEW_BETWEEN  1.0
+#define FAR_APART    2.0 /* distance of the centres over the sum of the radii */
 #define HIDDEN_ERROR 0.05
+/* A scene is dilute if a line across it meets fewer spheres than this on the mean. */
+#define DILUTE 0.5
 
 /* The square of the error of a sphere that hardly any window should meet, over that of one that many meet, both over
  * the squared difference of halves, minus 1. Measured: docs/accuracy.md. */
@@ -200,7 +202,7 @@ typedef struct pair_search {
     int64_t moved;     /* [UNIT] */
     uint64_t unseen;   /* [SQUARE_UNIT] */
     bool all, pairs;   /* all spheres are tried; pairs may be free */
-    double hidden;     /* distance of centres up to which pairs count that are hidden in part, in radii of sphere i */
+    bool hidden;       /* pairs that few spheres hide in part count, too */
     bool sparse;       /* what no window has met may count; in dense scenes other spheres hide it */
     bool untold;       /* some sphere has been met by no window, and its pair is not free */
 } pair_search;
@@ -217,7 +219,8 @@ static bool take_pair(pair_search *search, uint32_t other, double windows, doubl
     const fibrad_scene *scene = work->scene;
     fibrad_entries *entries = &search->work->entries;
     const double at[3] = {scene->x[other], scene->y[other], scene->z[other]}, inverse = work->inverse;
-    const bool hidden = windows < FEW_WINDOWS && square < search->hidden * search->hidden;
+    const double apart = FAR_APART * (1 + scene->r[other] * inverse);
+    const bool hidden = search->hidden && windows < FEW_WINDOWS && square > apart * apart;
     double c[3], f, error;
     for (int axis = 0; axis < 3; axis++) c[axis] = (at[axis] - work->centre[axis]) * inverse;
     if (!hidden && FIBRAD_VERSION_OF(fibrad_near_between, scene->facts.isa)(&work->near, c, scene->r[other] * inverse))
@@ -294,6 +297,13 @@ static double open_of(const fibrad_workspace *work, double scale) {
     return 1 - (double)units * UNIT;
 }
 
+static bool is_dilute(const fibrad_scene *scene) {
+    const double volume = scene->facts.spheres * (scene->spacing * scene->spacing * scene->spacing);
+    double discs = 0;
+    for (uint32_t j = 0; j < scene->facts.spheres; j++) discs += FIBRAD_PI * scene->r[j] * scene->r[j];
+    return discs * discs * discs < DILUTE * DILUTE * DILUTE * volume * volume;
+}
+
 fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, bool hidden) {
     const fibrad_scene *scene = work->scene;
     fibrad_entries *entries = &work->entries;
@@ -305,7 +315,7 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, b
     const double spacings = scene->spacing * work->inverse, volume = spacings * spacings * spacings;
     if (!search.all)
         search.far = fibrad_min(work->reach, fibrad_max(0, MANY_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3));
-    if (search.all && hidden) search.hidden = fibrad_max(0, FEW_BETWEEN / (4 * FIBRAD_PI) * volume - 8.0 / 3);
+    search.hidden = hidden && search.all && scene->facts.walls == 0 && is_dilute(scene);
     search.sparse = search.all || met < FEW_ENTRIES, search.pairs = !scene->cut[work->place];
     for (uint32_t k = 0; k < met && !search.all; k++)
         if (entries->sphere[k] < n) try_sphere(&search, entries->sphere[k], true);
