@@ -38,8 +38,8 @@
 #define UNSEEN_ASKED 512u
 
 /* If at most MOST_HIDING spheres hide a part of a pair, lines between the two tell how much. They tell it better than
- * windows, of which fewer than FEW_WINDOWS should meet the sphere. The end of line k is point TURN k of LINES. Measured:
- * HIDDEN_ERROR, the error of the part over that of one random line. */
+ * windows, of which fewer than FEW_WINDOWS should meet the sphere. The end of line k is point TURN k of LINES.
+ * Measured: HIDDEN_ERROR, the error of the part over that of one random line. */
 #define MOST_HIDING  4u
 #define LINES        64u
 #define TURN         51u
@@ -91,7 +91,8 @@ static bool hull_meets(const pair_hull *hull, const double at[3], double r) {
 }
 
 /* Counts the spheres other than the two at `place` and `other` that reach into their hull, up to most + 1. The first
- * `most` go to `between`. most + 1, too, if it takes long to find out, as beside a large sphere among many small ones. */
+ * `most` go to `between`. most + 1, too, if it takes long to find out, as beside a large sphere among many small ones.
+ */
 static uint32_t spheres_between(const fibrad_scene *scene, const pair_hull *hull, uint32_t place, uint32_t other,
                                 uint32_t most, uint32_t *between) {
     uint32_t compared = 0, count = 0;
