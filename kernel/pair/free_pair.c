@@ -324,7 +324,8 @@ fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, b
     search.pairs = search.pairs && search.all;
     const uint32_t step = search.all ? 1 : 1 + n / UNSEEN_ASKED;
     for (uint32_t j = 0; j < n && search.sparse; j += step) try_sphere(&search, j, false);
-    pairs.unseen = fibrad_sqrt(2 * (double)search.unseen * step * SQUARE_UNIT); /* what is open lacks as much */
+    const double both = search.hidden ? 2 : 1; /* what is open errs as much */
+    pairs.unseen = fibrad_sqrt(both * (double)search.unseen * step * SQUARE_UNIT);
     pairs.moved = (double)search.moved * UNIT;
     pairs.told = search.all && !search.untold;
     if (pairs.open + pairs.moved > 0) return pairs;
