@@ -61,7 +61,7 @@
 #define FEW_ON_SPHERES    .25 /* B, at emissivity .3: patches of spheres */
 #define FEW_ON_WALLS_SEEN 1.3 /* T: patches of walls that a sphere sees, whose beams are less even */
 #define FEW_ON_WALLS      .65 /* T: for walls themselves */
-#define LEVELS_ERROR      1.2 /* E: in exact rows, the change of a power from level to level */
+#define LEVELS_ERROR      1.8 /* E: in exact rows, the change of a power from level to level */
 #define SCATTERED_ERROR   1.5 /* E: the same, what comes by reflection from others */
 #define FEW_AT_REFLECTORS .2  /* R: part of it that fibrad_heat_enlarged leaves at walls that send back all */
 

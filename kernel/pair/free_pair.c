@@ -41,11 +41,11 @@
  * windows, of which fewer than FEW_WINDOWS should meet the sphere. The end of line k is point TURN k of LINES.
  * Measured: HIDDEN_ERROR, the error of the part over that of one random line. */
 #define MOST_HIDING  4u
-#define LINES        64u
-#define TURN         51u
+#define LINES        128u
+#define TURN         11u
 #define FEW_WINDOWS  8.0
 #define FAR_APART    2.0 /* distance of the centres over the sum of the radii */
-#define HIDDEN_ERROR 0.05
+#define HIDDEN_ERROR 0.04
 /* A scene is dilute if a line across it meets fewer spheres than this on the mean. */
 #define DILUTE 0.5
 
@@ -132,7 +132,8 @@ static bool triangles_between(const fibrad_scene *scene, const pair_hull *hull) 
 static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32_t count, const uint32_t *between) {
     fibrad_disc_points points;
     double u[3], v[3];
-    uint64_t open = UINT64_MAX; /* bit k: of line k */
+    bool hidden[LINES] = {false};
+    uint32_t open = LINES;
     (void)fibrad_disc_points_get(LINES, &points);
     fibrad_frame_about(hull->axis, u, v);
     for (uint32_t b = 0; b < count; b++) {
@@ -144,10 +145,11 @@ static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32
             const uint32_t end = TURN * k % LINES;
             const double p = from * points.x[k] + to * points.x[end] - x;
             const double q = from * points.y[k] + to * points.y[end] - y;
-            open &= ~((uint64_t)(p * p + q * q < square) << k);
+            hidden[k] = hidden[k] || p * p + q * q < square;
         }
     }
-    return __builtin_popcountll(open) / (double)LINES;
+    for (uint32_t k = 0; k < LINES; k++) open -= hidden[k];
+    return open / (double)LINES;
 }
 
 /* The factor between the spheres at two places, if at most so many spheres come between them. error: out: of it. */
