@@ -152,8 +152,7 @@ static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32
     return open / (double)LINES;
 }
 
-/* The factor between the spheres at two places, if at most so many spheres come between them. error: out: of it. */
-static bool pair_seen(const fibrad_scene *scene, uint32_t place, uint32_t other, uint32_t most, double *f,
+bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, uint32_t most, double *f,
                       double *error) {
     uint32_t between[MOST_HIDING];
     const pair_hull hull = hull_of(scene, place, other);
@@ -167,11 +166,6 @@ static bool pair_seen(const fibrad_scene *scene, uint32_t place, uint32_t other,
     *error = *f * HIDDEN_ERROR * fibrad_sqrt(left * (1 - left) + 1.0 / LINES);
     *f *= left;
     return true;
-}
-
-bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f) {
-    double error;
-    return pair_seen(scene, place, other, 0, f, &error);
 }
 
 static double sum_of_entry(const fibrad_entries *entries, uint32_t entry) {
@@ -228,7 +222,7 @@ static bool take_pair(pair_search *search, uint32_t other, double windows, doubl
     for (int axis = 0; axis < 3; axis++) c[axis] = (at[axis] - work->centre[axis]) * inverse;
     if (!hidden && FIBRAD_VERSION_OF(fibrad_near_between, scene->facts.isa)(&work->near, c, scene->r[other] * inverse))
         return false;
-    if (!pair_seen(scene, work->place, other, hidden ? MOST_HIDING : 0, &f, &error)) return false;
+    if (!fibrad_free_pair(scene, work->place, other, hidden ? MOST_HIDING : 0, &f, &error)) return false;
     search->unseen += (uint64_t)(error * error / SQUARE_UNIT);
     if (f == 0) return true; /* what windows have seen remains */
     const uint32_t entry = fibrad_entries_of(entries, other);
@@ -301,10 +295,10 @@ static double open_of(const fibrad_workspace *work, double scale) {
 }
 
 static bool is_dilute(const fibrad_scene *scene) {
-    const double volume = scene->facts.spheres * (scene->spacing * scene->spacing * scene->spacing);
+    const double n = scene->facts.spheres, inverse = 1 / scene->spacing;
     double discs = 0;
-    for (uint32_t j = 0; j < scene->facts.spheres; j++) discs += FIBRAD_PI * scene->r[j] * scene->r[j];
-    return discs * discs * discs < DILUTE * DILUTE * DILUTE * volume * volume;
+    for (uint32_t j = 0; j < n; j++) discs += FIBRAD_PI * (scene->r[j] * inverse) * (scene->r[j] * inverse);
+    return discs * discs * discs < DILUTE * DILUTE * DILUTE * n * n;
 }
 
 fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, bool hidden) {
