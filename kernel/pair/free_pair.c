@@ -46,8 +46,10 @@
 #define FEW_WINDOWS  8.0
 #define FAR_APART    2.0 /* distance of the centres over the sum of the radii */
 #define HIDDEN_ERROR 0.04
-/* A scene is dilute if a line across it meets fewer spheres than this on the mean. */
-#define DILUTE 0.5
+/* A scene is dilute if a line across it meets fewer spheres than DILUTE on the mean, and fewer than DILUTE_ALL over the
+ * number of spheres. In others lines take longer than a tenth of the windows. */
+#define DILUTE     0.5
+#define DILUTE_ALL 12.0
 
 /* The square of the error of a sphere that hardly any window should meet, over that of one that many meet, both over
  * the squared difference of halves, minus 1. Measured: docs/accuracy.md. */
@@ -139,13 +141,14 @@ static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32
     for (uint32_t b = 0; b < count; b++) {
         const uint32_t j = between[b];
         const double at[3] = {scene->x[j] - hull->from[0], scene->y[j] - hull->from[1], scene->z[j] - hull->from[2]};
-        const double t = fibrad_dot(at, hull->axis) / hull->length, x = fibrad_dot(at, u), y = fibrad_dot(at, v);
-        const double from = (1 - t) * hull->r[0], to = t * hull->r[1], square = scene->r[j] * scene->r[j];
+        const double t = fibrad_dot(at, hull->axis) / hull->length, inverse = 1 / scene->r[j];
+        const float x = (float)(fibrad_dot(at, u) * inverse), y = (float)(fibrad_dot(at, v) * inverse);
+        const float from = (float)((1 - t) * hull->r[0] * inverse), to = (float)(t * hull->r[1] * inverse);
         for (uint32_t k = 0; k < LINES && t > 0 && t < 1; k++) {
             const uint32_t end = TURN * k % LINES;
-            const double p = from * points.x[k] + to * points.x[end] - x;
-            const double q = from * points.y[k] + to * points.y[end] - y;
-            hidden[k] = hidden[k] || p * p + q * q < square;
+            const float p = from * points.x[k] + to * points.x[end] - x;
+            const float q = from * points.y[k] + to * points.y[end] - y;
+            hidden[k] |= p * p + q * q < 1;
         }
     }
     for (uint32_t k = 0; k < LINES; k++) open -= hidden[k];
@@ -298,7 +301,8 @@ static bool is_dilute(const fibrad_scene *scene) {
     const double n = scene->facts.spheres, inverse = 1 / scene->spacing;
     double discs = 0;
     for (uint32_t j = 0; j < n; j++) discs += FIBRAD_PI * (scene->r[j] * inverse) * (scene->r[j] * inverse);
-    return discs * discs * discs < DILUTE * DILUTE * DILUTE * n * n;
+    const double cube = discs * discs * discs / (n * n);
+    return cube < DILUTE * DILUTE * DILUTE && n * n * n * cube < DILUTE_ALL * DILUTE_ALL * DILUTE_ALL;
 }
 
 fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, bool hidden) {
