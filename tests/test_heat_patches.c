@@ -143,11 +143,12 @@ TEST(parts_are_compact_and_even) {
 /* What the beams of a row should stand for: to the sphere of a free pair its exact factor, to others as many beams as
  * were followed. The surroundings, the last, get the rest. */
 static void beams_expected(const fibrad_heat *heat, uint32_t place, const uint32_t followed[13], double expected[13]) {
-    double f;
+    double f, error;
     expected[12] = heat->beams;
     for (uint32_t body = 0; body < 12; body++) {
         expected[body] = followed[body];
-        if (body != place && fibrad_free_pair(heat->scene, place, body, &f)) expected[body] = f * heat->beams;
+        if (body != place && fibrad_free_pair(heat->scene, place, body, 0, &f, &error))
+            expected[body] = f * heat->beams;
         expected[12] -= expected[body];
     }
 }

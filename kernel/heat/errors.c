@@ -23,6 +23,7 @@
  *
  * docs/methods.md section 21 has the terms in a table. */
 #include "heat/errors.h"
+#include "base/vector.h"
 #include "patches/subdivision.h"
 #include "scene/walls.h"
 
@@ -36,6 +37,7 @@
  *   M  small spheres beside triangles against the same beside planes, which are divided
  *   L  dim walls beside few spheres, tests/test_heat_walls.c residuals_are_estimated
  *   G  150 small plates before a sphere, tests/test_heat_mesh.c
+ *   E  198 pairs 10 to 1,000 radii apart, tests/test_few.c; 50 scenes of 2 to 6 spheres
  *   H  240 pairs of spheres and 400 spheres of poly2000, docs/accuracy.md */
 
 /* 1. beams and rays */
@@ -59,6 +61,8 @@
 #define FEW_ON_SPHERES    .25 /* B, at emissivity .3: patches of spheres */
 #define FEW_ON_WALLS_SEEN 1.3 /* T: patches of walls that a sphere sees, whose beams are less even */
 #define FEW_ON_WALLS      .65 /* T: for walls themselves */
+#define LEVELS_ERROR      1.8 /* E: in exact rows, the change of a power from level to level */
+#define SCATTERED_ERROR   1.5 /* E: the same, what comes by reflection from others */
 #define FEW_AT_REFLECTORS .2  /* R: part of it that fibrad_heat_enlarged leaves at walls that send back all */
 
 /* 4. the steps of the solution to come */
@@ -262,6 +266,37 @@ static double few_error(const fibrad_heat *heat, const fibrad_heat_errors *error
     return squared(few.rays + few.beams);
 }
 
+/* ---- exact rows ------------------------------------------------------------------------------------------------- */
+
+/* Whether a sphere exchanges all it does with surroundings and with spheres of exact factors. */
+static bool is_exact(const fibrad_heat *heat, uint32_t b) {
+    return b < heat->spheres && heat->scene->facts.walls == 0 && heat->pencils.row[b].complete &&
+           heat->samples.seen[b].squares == 0;
+}
+
+/* What a sphere gets of light that others reflect, the surroundings' aside, about. Few beams may miss it. */
+static double scattered(const fibrad_heat *heat, uint32_t b, double outside) {
+    const fibrad_scene *scene = heat->scene;
+    const double *x = scene->x, *y = scene->y, *z = scene->z;
+    double sum = 0;
+    for (uint32_t j = 0; j < heat->spheres; j++) {
+        const double c[3] = {x[j] - x[b], y[j] - y[b], z[j] - z[b]}, eps = heat->sources.emissivity[j];
+        const double reflected = spread_of(heat, j).mean - eps * heat->sources.emission[j] - (1 - eps) * outside;
+        if (j != b) sum += scene->r[j] * scene->r[j] / (4 * fibrad_dot(c, c)) * fibrad_abs(reflected);
+    }
+    return heat->sources.emissivity[b] * spread_of(heat, b).area * sum;
+}
+
+/* The square of the error of its power. Patches, and few beams on them, show in the difference between the levels. */
+static double exact_error(const fibrad_heat *heat, uint32_t b) {
+    const fibrad_heat_spread own = spread_of(heat, b), outside = spread_of(heat, heat->bodies - 1);
+    const double power = heat->solution.power[b], changed = power - heat->solution.coarse[b];
+    const double lost = heat->sources.emissivity[b] * own.area * (own.mean - outside.mean);
+    return squared(LEVELS_ERROR * changed) + squared(RESIDUAL_ERROR * heat->solution.unsettled[b]) +
+           squared(SCATTERED_ERROR * scattered(heat, b, outside.mean)) +
+           squared(2 * FLOAT_ERROR) * (squared(power) + squared(lost));
+}
+
 /* ---- powers ----------------------------------------------------------------------------------------------------- */
 
 static double own_sample(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
@@ -317,7 +352,8 @@ double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_err
     }
     const double pooled = samples > 0 ? sum / samples * squared(exchange) : 0;
     const double smooth = b < heat->spheres ? spot_error(heat, b) : patch_error(heat, b);
-    return exchange > 0 ? squared(smooth) + (own_sample(heat, errors, b) + pooled) / 2 : 0;
+    const double all = exchange > 0 ? squared(smooth) + (own_sample(heat, errors, b) + pooled) / 2 : 0;
+    return is_exact(heat, b) ? fibrad_min(all, exact_error(heat, b)) : all;
 }
 
 double fibrad_heat_power_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
@@ -377,7 +413,8 @@ double fibrad_heat_surroundings_error(const fibrad_heat *heat, const fibrad_heat
             few += squared(outside * few_of_wall(heat, errors, b).rays * heat->solution.power[b]);
     }
     const double seen = errors->all.area > 0 ? fibrad_min(1, area / errors->all.area) : 0;
-    for (uint32_t b = 0; b < heat->spheres && area > 0; b++) unseen += unseen_error(heat, errors, b);
+    for (uint32_t b = 0; b < heat->spheres && area > 0; b++)
+        unseen += is_exact(heat, b) ? fibrad_heat_radiated_error(heat, errors, b) : unseen_error(heat, errors, b);
     const double rays = squared(RAY_ERROR) * errors->outside + outside_by_walls(heat, errors);
     return fibrad_sqrt(squared(extrapolation_error(heat, changed)) + squared(RESIDUAL_ERROR * residual) +
                        squared(seen * errors->walls) + unseen + few +

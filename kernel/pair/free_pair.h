@@ -7,23 +7,25 @@
 
 #include "workspace/workspace.h"
 
-/* Whether nothing can come between the spheres at two places. f: out: the factor from
- * `place` to `other`. */
-bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, double *f);
+/* Whether at most so many spheres, up to 4, and no triangle can come between the spheres at two places. f: out: the
+ * factor from `place` to `other`. error: out: of it. */
+bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, uint32_t most, double *f,
+                      double *error);
 
 /* What the search for free pairs of a row has found. */
 typedef struct fibrad_free_pairs {
     double moved;  /* what windows have seen of the spheres of free pairs, minus the exact factors */
     double open;   /* what windows have seen besides spheres */
-    double unseen; /* root of the sum of squared factors to spheres that no window has met */
+    double unseen; /* root of a sum of squares: factors to spheres that no window has met, errors of hidden pairs */
     bool told;     /* all pairs were tried, and each sphere that no window has met is one of a free pair */
 } fibrad_free_pairs;
 
 /* Finds the free pairs of the present row, all of whose windows are done. Their exact factors go to entries.exact.
  * In scenes of few spheres all pairs are tried, in others only near ones. Rows of which no
  * window is open have none, since only walls and surroundings can take the difference. scale: factor over the sums of
- * entries. Entries that find no room are counted in entries.missed. */
-fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale);
+ * entries. hidden: in dilute scenes of few spheres without walls, far pairs that few spheres hide in part have the
+ * factors of lines between them. Entries that find no room are counted in entries.missed. */
+fibrad_free_pairs fibrad_free_pairs_find(fibrad_workspace *work, double scale, bool hidden);
 
 /* Gives the segments that meet a sphere of a free pair their share of its factor, and those that meet no sphere their
  * share of the rest. If no segment meets a sphere of a free pair, one more segment does. Error: FIBRAD_E_WORK: there is

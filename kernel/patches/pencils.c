@@ -302,7 +302,7 @@ uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint3
     const double all = heat->beams;
     heat->pencils.row[work->place].complete = false;
     if (heat->division.root[work->place] != FIBRAD_NONE) return count;
-    const fibrad_free_pairs pairs = fibrad_free_pairs_find(work, 1 / all);
+    const fibrad_free_pairs pairs = fibrad_free_pairs_find(work, 1 / all, false);
     const struct free_share share = share_of_free(heat, entries);
     const double exact = (double)share.exact * 0x1p-60 * all, others = beams_in_parts(share.others);
     const double left = others + (beams_in_parts(share.seen) - exact);

@@ -336,7 +336,7 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     const double all = sums.whole[0] + sums.whole[1], scale = masked ? 1 / all : 1 / (windows.count * windows.size);
     for (int half = 0; half < 2 && lines; half++) work->entries.balance[half] = all / (2 * sums.whole[half]);
     fibrad_free_pairs pairs = {.open = 1};
-    if (exact) pairs = fibrad_free_pairs_find(work, scale);
+    if (exact) pairs = fibrad_free_pairs_find(work, scale, work->segments.length == 0);
     if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
     status = fibrad_free_pairs_segments(work, &pairs);
     if (status == FIBRAD_OK) status = fibrad_entries_row(&work->entries, scene, scale, row);
