@@ -14,6 +14,9 @@
 
 #define SPOT_LARGEST .4 /* largest radius of a spot for which a sphere adds to its resistance */
 
+#define TOUCHES 1.05 /* farthest wall whose light is known about a spot, in radii from the centre */
+#define NEAR    .8
+
 struct spot {
     double apart, resistance; /* K, and K over power */
 };
@@ -57,26 +60,62 @@ static void enter_at(const fibrad_heat *heat, uint32_t b, const double axis[3], 
  * out evenly. docs/methods.md section 28. */
 static double resistance_of_spot(double conductivity, double size, double radius) {
     const double x = fibrad_min(size, SPOT_LARGEST);
-    return (1 - x / FIBRAD_PI * (.5 + fibrad_log(2 * x) + .85 * x)) / (4 * conductivity * size * radius);
+    return (1 - x / FIBRAD_PI * (.5 + fibrad_log(2 * x) + .77 * x)) / (4 * conductivity * size * radius);
 }
 
-/* The end of contact k on `body`. entering: what enters there so far. The irradiation on the axis counts most, and
- * patches have means, so it is extrapolated to patches without size. */
+/* How the rings about a spot radiate: the power per area that a ring absorbs is `absorbs` minus `emits` times the
+ * difference of its emission from the mean of the sphere. */
+struct ring_light {
+    double absorbs[FIBRAD_RINGS], emits[FIBRAD_RINGS];
+};
+
+/* Near a wall, of which rings see the share (1 + cosine)/2, irradiation is known: the wall's own, what the wall sends
+ * back to the rings, and light from elsewhere, taken to be equally bright in all directions. */
+static void look_at_wall(const fibrad_heat *heat, uint32_t b, uint32_t wall, const fibrad_heat_ringed *mean,
+                         struct ring_light *light) {
+    const fibrad_scene *scene = heat->scene;
+    const double centre[3] = {scene->x[b], scene->y[b], scene->z[b]};
+    const double far = fibrad_walls_away(&scene->container, wall - heat->spheres, centre) / scene->r[b];
+    const double e = heat->sources.emissivity[b], bright = heat->sources.emissivity[wall];
+    double back[FIBRAD_RINGS], own[FIBRAD_RINGS], open[FIBRAD_RINGS], sum = 0, squares = 0;
+    if (far > TOUCHES) return;
+    for (uint32_t k = 0; k < FIBRAD_RINGS; k++) {
+        const double cosine = heat->rings->cosine[k], sees = (1 + cosine) / 2, taper = (cosine - NEAR) / (1 - NEAR);
+        const double height = fibrad_max(1, far), square = height * height + 1 - cosine * cosine;
+        if (cosine < NEAR) break;
+        back[k] = sees * (1 - bright) * taper * height / (square * fibrad_sqrt(square));
+        own[k] = sees * bright * heat->sources.emission[wall];
+        open[k] = 1 - sees * bright - back[k];
+        sum += mean->area[k] * open[k] * (mean->arriving[k] - back[k] * mean->sent[k] - own[k]);
+        squares += mean->area[k] * open[k] * open[k];
+    }
+    for (uint32_t k = 0; k < FIBRAD_RINGS && squares > 0 && heat->rings->cosine[k] >= NEAR; k++) {
+        const double keeps = e / (1 - back[k] * (1 - e));
+        light->emits[k] = keeps * (1 - back[k]);
+        light->absorbs[k] = keeps * (own[k] + open[k] * (sum / squares));
+    }
+}
+
+/* The end of contact k on `body`. entering: what enters there so far. */
 static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double radius,
                              double entering_so_far, fibrad_rings_work *work) {
     double axis[3], response[FIBRAD_RINGS], apart = 0;
     struct spot spot = {0, 0};
+    struct ring_light light;
     fibrad_heat_ringed mean;
     if (!direction_of_spot(heat, body, other, axis)) return spot;
     const double r = heat->scene->r[body], eps = heat->sources.emissivity[body], k = heat->sources.conductivity[body],
                  uneven = heat->sources.unevenness[body], slope = uneven * k / r;
     enter_at(heat, body, axis, -entering_so_far);
-    fibrad_heat_look_in_rings(heat, body, axis, 1, other >= heat->spheres ? FIBRAD_HEAT_EXTRAPOLATION : 0, &mean);
+    fibrad_heat_look_in_rings(heat, body, axis, 1, other >= heat->spheres, &mean);
     enter_at(heat, body, axis, entering_so_far);
+    for (uint32_t m = 0; m < FIBRAD_RINGS; m++) light.emits[m] = eps, light.absorbs[m] = eps * mean.arriving[m];
+    if (other >= heat->spheres) look_at_wall(heat, body, other, &mean, &light);
     const double less =
-        fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven, work, response);
+        fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), light.emits, uneven, work, response);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
-        apart += heat->rings->share[m] * response[m] * (eps * mean.arriving[m] + mean.absorbed[m]);
+        apart += heat->rings->share[m] * response[m] *
+                 (light.absorbs[m] - light.emits[m] * heat->sources.emission[body] + mean.absorbed[m]);
     spot.apart = apart / slope;
     spot.resistance = resistance_of_spot(k, radius / r, r) - less / (4 * FIBRAD_PI * r * r * slope);
     return spot;

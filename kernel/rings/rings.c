@@ -214,12 +214,12 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
 
 /* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.
  */
-double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness,
+double fibrad_rings_spot(const fibrad_rings *rings, double size, const double emissivity[RINGS], double unevenness,
                          fibrad_rings_work *work, double response[RINGS]) {
     double flux[RINGS], less = 0;
     for (uint32_t k = 0; k < RINGS; k++) {
         double *row = work->row[k];
-        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * rings->spread[k][m] + (k == m);
+        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity[k] * unevenness * rings->spread[k][m] + (k == m);
         row[RINGS] = flux[k] = share_of_spot(rings, size, k) / rings->share[k];
     }
     fibrad_solve_linear(RINGS, 2 * RINGS + 1, work->row[0]);

@@ -50,8 +50,8 @@ void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double
  *   Output   response: mean emission of the spot, minus that of the sphere, for one unit of absorbed power over area
  * that is spread in this ring alone, over the share of the ring Result   by how much less the spot emits, for a unit of
  * power over the sphere's area that enters through it, than if the sphere did not radiate */
-double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness,
-                         fibrad_rings_work *work, double response[FIBRAD_RINGS]);
+double fibrad_rings_spot(const fibrad_rings *rings, double size, const double emissivity[FIBRAD_RINGS],
+                         double unevenness, fibrad_rings_work *work, double response[FIBRAD_RINGS]);
 
 /* The emission on the axis minus the mean emission of sphere[0]. count: 1, or 2 if the spheres face each other. */
 double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count,
