@@ -17,19 +17,25 @@
 #define TOUCHES 1.05 /* farthest wall whose light is known about a spot, in radii from the centre */
 #define NEAR    .8
 
+#include <stdlib.h>
+#define BLUR (getenv("BLUR")?atof(getenv("BLUR")):1.85)
+#ifndef SMOOTHLY
+#define SMOOTHLY (other >= heat->spheres)
+#endif
 struct spot {
     double apart, resistance; /* K, and K over power */
 };
 
 /* The direction from a sphere to the other end of contact k. False: it is not known, or the sphere has one temperature.
  */
-static bool direction_of_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double axis[3]) {
+static bool direction_of_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double axis[3], double *away) {
     const fibrad_scene *scene = heat->scene;
     if (!fibrad_heat_conducts(heat, body) || other >= fibrad_heat_body(heat, FIBRAD_MESHES)) return false;
     const double at[3] = {scene->x[body], scene->y[body], scene->z[body]};
     if (other >= heat->spheres) {
         fibrad_wall_normal(scene, other - heat->spheres, at, axis);
         for (int k = 0; k < 3; k++) axis[k] = -axis[k];
+        *away = fibrad_walls_away(&scene->container, other - heat->spheres, at);
         return true;
     }
     axis[0] = scene->x[other] - at[0], axis[1] = scene->y[other] - at[1], axis[2] = scene->z[other] - at[2];
@@ -37,6 +43,7 @@ static bool direction_of_spot(const fibrad_heat *heat, uint32_t body, uint32_t o
         if (scene->period[k] > 0) axis[k] -= scene->period[k] * fibrad_floor(axis[k] / scene->period[k] + .5);
     const double distance = fibrad_sqrt(fibrad_dot(axis, axis));
     for (int k = 0; k < 3; k++) axis[k] /= distance;
+    *away = distance;
     return distance > 0;
 }
 
@@ -63,62 +70,107 @@ static double resistance_of_spot(double conductivity, double size, double radius
     return (1 - x / FIBRAD_PI * (.5 + fibrad_log(2 * x) + .77 * x)) / (4 * conductivity * size * radius);
 }
 
+/* An end of a contact: a place on a sphere, or a wall. */
+struct end {
+    uint32_t body;
+    bool known; /* the place is known, and the sphere conducts */
+    double axis[3];
+    fibrad_heat_ringed mean; /* about the axis */
+};
+
 /* How the rings about a spot radiate: the power per area that a ring absorbs is `absorbs` minus `emits` times the
  * difference of its emission from the mean of the sphere. */
 struct ring_light {
-    double absorbs[FIBRAD_RINGS], emits[FIBRAD_RINGS];
+    double absorbs[FIBRAD_RINGS], emits[FIBRAD_RINGS], follows[FIBRAD_RINGS];
 };
 
-/* Near a wall, of which rings see the share (1 + cosine)/2, irradiation is known: the wall's own, what the wall sends
- * back to the rings, and light from elsewhere, taken to be equally bright in all directions. */
-static void look_at_wall(const fibrad_heat *heat, uint32_t b, uint32_t wall, const fibrad_heat_ringed *mean,
-                         struct ring_light *light) {
-    const fibrad_scene *scene = heat->scene;
-    const double centre[3] = {scene->x[b], scene->y[b], scene->z[b]};
-    const double far = fibrad_walls_away(&scene->container, wall - heat->spheres, centre) / scene->r[b];
-    const double e = heat->sources.emissivity[b], bright = heat->sources.emissivity[wall];
+/* What a ring has before it: the share of its view that is the other surface, the share of that surface's view that is
+ * the sphere, and what the other surface emits there. */
+struct opposite {
+    double sees, seen, emitted;
+};
+
+static struct opposite opposite_wall(const fibrad_heat *heat, uint32_t wall, double height, double cosine) {
+    const double square = height * height + 1 - cosine * cosine;
+    return (struct opposite){(1 + cosine) / 2, height / (square * fibrad_sqrt(square)),
+                             heat->sources.emissivity[wall] * heat->sources.emission[wall]};
+}
+
+static struct opposite opposite_sphere(const fibrad_heat *heat, double r, const struct end *other, double distance,
+                                       double cosine) {
+    const double size = heat->scene->r[other->body], eps = heat->sources.emissivity[other->body];
+    const double sine = fibrad_min(1, fibrad_sqrt(1 - cosine * cosine) * r / size), turned = fibrad_sqrt(1 - sine * sine);
+    const uint32_t k = fibrad_rings_at(heat->rings, turned);
+    return (struct opposite){fibrad_rings_sees(r, size, distance, cosine), fibrad_rings_sees(size, r, distance, turned),
+                             other->known ? other->mean.sent[k] - (1 - eps) * other->mean.arriving[k]
+                                          : eps * heat->sources.emission[other->body]};
+}
+
+/* Where a sphere touches a wall or a sphere, irradiation is known: what the other surface emits, what it sends back,
+ * and light from elsewhere, taken to be equally bright in all directions. */
+static void look_before(const fibrad_heat *heat, const struct end *end, const struct end *other, double away,
+                        struct ring_light *light) {
+    const double r = heat->scene->r[end->body], e = heat->sources.emissivity[end->body];
+    const double bright = heat->sources.emissivity[other->body], mean = heat->sources.emission[end->body];
+    const bool wall = other->body >= heat->spheres;
+    const double touching = wall ? r : r + heat->scene->r[other->body], distance = fibrad_max(away, touching);
+    const double follows =
+        other->known ? heat->sources.conductivity[end->body] / heat->sources.conductivity[other->body] : 0;
     double back[FIBRAD_RINGS], own[FIBRAD_RINGS], open[FIBRAD_RINGS], sum = 0, squares = 0;
-    if (far > TOUCHES) return;
-    for (uint32_t k = 0; k < FIBRAD_RINGS; k++) {
-        const double cosine = heat->rings->cosine[k], sees = (1 + cosine) / 2, taper = (cosine - NEAR) / (1 - NEAR);
-        const double height = fibrad_max(1, far), square = height * height + 1 - cosine * cosine;
-        if (cosine < NEAR) break;
-        back[k] = sees * (1 - bright) * taper * height / (square * fibrad_sqrt(square));
-        own[k] = sees * bright * heat->sources.emission[wall];
-        open[k] = 1 - sees * bright - back[k];
-        sum += mean->area[k] * open[k] * (mean->arriving[k] - back[k] * mean->sent[k] - own[k]);
-        squares += mean->area[k] * open[k] * open[k];
+    if (away > TOUCHES * touching) return;
+    for (uint32_t k = 0; k < FIBRAD_RINGS && heat->rings->cosine[k] >= NEAR; k++) {
+        const double cosine = heat->rings->cosine[k], taper = fibrad_min(1, 2 * (cosine - NEAR) / (1 - NEAR));
+        const struct opposite opposite = wall ? opposite_wall(heat, other->body, distance / r, cosine)
+                                              : opposite_sphere(heat, r, other, distance, cosine);
+        back[k] = opposite.sees * opposite.seen * (1 - bright) * taper;
+        own[k] = opposite.sees * opposite.emitted;
+        light->follows[k] = opposite.sees * bright * follows * taper;
+        open[k] = 1 - opposite.sees * bright - back[k];
+        sum += end->mean.area[k] * open[k] *
+               (end->mean.arriving[k] - back[k] * end->mean.sent[k] - own[k]);
+        squares += end->mean.area[k] * open[k] * open[k];
     }
     for (uint32_t k = 0; k < FIBRAD_RINGS && squares > 0 && heat->rings->cosine[k] >= NEAR; k++) {
         const double keeps = e / (1 - back[k] * (1 - e));
         light->emits[k] = keeps * (1 - back[k]);
-        light->absorbs[k] = keeps * (own[k] + open[k] * (sum / squares));
+        light->follows[k] *= keeps;
+        light->absorbs[k] = keeps * (own[k] + open[k] * (sum / squares) - (1 - back[k]) * mean);
     }
 }
 
-/* The end of contact k on `body`. entering: what enters there so far. */
-static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t other, double radius,
-                             double entering_so_far, fibrad_rings_work *work) {
-    double axis[3], response[FIBRAD_RINGS], apart = 0;
-    struct spot spot = {0, 0};
+/* Looks at the rings about an end. entering: what enters there so far. Returns the distance of the other end from the
+ * centre. */
+static double look_at_end(const fibrad_heat *heat, uint32_t body, uint32_t other, double entering, struct end *end) {
+    double away = 0;
+    end->body = body, end->known = direction_of_spot(heat, body, other, end->axis, &away);
+    if (!end->known) return away;
+    enter_at(heat, body, end->axis, -entering);
+    fibrad_heat_look_in_rings(heat, body, end->axis, 1, SMOOTHLY, &end->mean);
+    enter_at(heat, body, end->axis, entering);
+    return away;
+}
+
+static struct spot find_spot(const fibrad_heat *heat, const struct end *end, const struct end *other, double away,
+                             double radius, fibrad_rings_work *work) {
+    double response[FIBRAD_RINGS], apart = 0;
     struct ring_light light;
-    fibrad_heat_ringed mean;
-    if (!direction_of_spot(heat, body, other, axis)) return spot;
-    const double r = heat->scene->r[body], eps = heat->sources.emissivity[body], k = heat->sources.conductivity[body],
-                 uneven = heat->sources.unevenness[body], slope = uneven * k / r;
-    enter_at(heat, body, axis, -entering_so_far);
-    fibrad_heat_look_in_rings(heat, body, axis, 1, other >= heat->spheres, &mean);
-    enter_at(heat, body, axis, entering_so_far);
-    for (uint32_t m = 0; m < FIBRAD_RINGS; m++) light.emits[m] = eps, light.absorbs[m] = eps * mean.arriving[m];
-    if (other >= heat->spheres) look_at_wall(heat, body, other, &mean, &light);
-    const double less =
-        fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), light.emits, uneven, work, response);
+    if (!end->known) return (struct spot){0, 0};
+    const uint32_t b = end->body;
+    const double r = heat->scene->r[b], eps = heat->sources.emissivity[b], k = heat->sources.conductivity[b],
+                 uneven = heat->sources.unevenness[b], slope = uneven * k / r;
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
-        apart += heat->rings->share[m] * response[m] *
-                 (light.absorbs[m] - light.emits[m] * heat->sources.emission[body] + mean.absorbed[m]);
-    spot.apart = apart / slope;
-    spot.resistance = resistance_of_spot(k, radius / r, r) - less / (4 * FIBRAD_PI * r * r * slope);
-    return spot;
+        light.emits[m] = eps, light.follows[m] = 0, light.absorbs[m] = eps * (end->mean.arriving[m] - heat->sources.emission[b]);
+    look_before(heat, end, other, away, &light);
+    const double size = fibrad_min(radius / r, SPOT_LARGEST), blur = BLUR / fibrad_sqrt(heat->config.patches);
+    double less = fibrad_rings_spot(heat->rings, size, light.emits, uneven, work, response);
+    for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
+        if (light.follows[m] > 0)
+            less += heat->rings->share[m] * light.follows[m] * response[m] * response[m] *
+                    (1 - fibrad_rings_warmth(heat->rings, blur, m) / fibrad_rings_warmth(heat->rings, size, m));
+    for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
+        apart += heat->rings->share[m] * response[m] * (light.absorbs[m] + end->mean.absorbed[m]);
+    return (struct spot){apart / slope,
+                         resistance_of_spot(k, radius / r, r) - less / (4 * FIBRAD_PI * r * r * slope)};
 }
 
 static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
@@ -138,8 +190,10 @@ static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) 
     const double softness[2] = {i < heat->spheres ? 1 / heat->sources.conductivity[i] : 0,
                                 j < heat->spheres ? 1 / heat->sources.conductivity[j] : 0};
     const double radius = given * (softness[0] + softness[1]) / 4;
-    const struct spot first = find_spot(heat, i, j, radius, -last, work),
-                      second = find_spot(heat, j, i, radius, last, work);
+    struct end end[2];
+    const double away[2] = {look_at_end(heat, i, j, -last, &end[0]), look_at_end(heat, j, i, last, &end[1])};
+    const struct spot first = find_spot(heat, &end[0], &end[1], away[0], radius, work),
+                      second = find_spot(heat, &end[1], &end[0], away[1], radius, work);
     const double resistance = first.resistance + second.resistance;
     if (resistance > 0 && resistance < inf)
         s->conductance[k] = 1 / resistance, s->offset[k] = (first.apart - second.apart) / resistance;
@@ -172,14 +226,14 @@ double fibrad_heat_find_spots(fibrad_heat *heat) {
 void fibrad_heat_place_flows(fibrad_heat *heat) {
     const fibrad_contacts *c = &heat->contacts;
     const fibrad_heat_spots *s = &heat->spots;
-    double axis[3];
+    double axis[3], away;
     fibrad_zero(s->entering, heat->patches * sizeof *s->entering);
     for (uint32_t k = 0; k < c->count; k++) {
         const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
         s->flow[k] = s->next[k];
         if (i == j) continue;
-        if (i < heat->spheres && direction_of_spot(heat, i, j, axis)) enter_at(heat, i, axis, -s->flow[k]);
-        if (j < heat->spheres && direction_of_spot(heat, j, i, axis)) enter_at(heat, j, axis, s->flow[k]);
+        if (i < heat->spheres && direction_of_spot(heat, i, j, axis, &away)) enter_at(heat, i, axis, -s->flow[k]);
+        if (j < heat->spheres && direction_of_spot(heat, j, i, axis, &away)) enter_at(heat, j, axis, s->flow[k]);
     }
 }
 

@@ -130,6 +130,11 @@ static double sum_of_factors(const struct ring_place *from, double other, double
     return factor_of_point(far / other, (z * from->cosine - from->across * from->sine) / far);
 }
 
+double fibrad_rings_sees(double radius, double other, double distance, double cosine) {
+    const double sine = fibrad_sqrt(1 - cosine * cosine);
+    return sum_of_factors(&(struct ring_place){radius * sine, radius * cosine, sine, cosine}, other, distance);
+}
+
 /* Scales what the rings of sphere i see, so that the sums of factors are exact. */
 static void scale_factors(const fibrad_rings *rings, const double radius[2], double distance, int i,
                           fibrad_rings_work *work) {
@@ -210,6 +215,13 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
     const double low = fibrad_min(1, 4 * rings->edge[k] / (size * size)),
                  high = fibrad_min(1, 4 * rings->edge[k + 1] / (size * size));
     return fibrad_sqrt(1 - low) - fibrad_sqrt(1 - high);
+}
+
+double fibrad_rings_warmth(const fibrad_rings *rings, double size, uint32_t k) {
+    double sum = 0;
+    for (uint32_t m = 0; m < RINGS; m++)
+        sum += rings->spread[k][m] * share_of_spot(rings, size, m) / rings->share[m];
+    return sum;
 }
 
 /* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.
