@@ -164,7 +164,7 @@ typedef struct fibrad_heat_sources {
     const uint32_t *contact_second; /* [contacts], the other end */
     const double *conductance;      /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
     uint32_t contacts;              /* number of contacts */
-    double *contact_places; /* [4 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
+    double *contact_places; /* [5 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
@@ -244,6 +244,7 @@ typedef struct fibrad_heat_result {
     double *conducted;              /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
     double *wall_conducted;         /* sigma K^4 L^2, [walls], out: part of wall_power, through contacts; may be NULL */
     double *contact_flow;           /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */
+    double *contact_error;          /* sigma K^4 L^2, [contacts], out: estimated error of contact_flow; may be NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

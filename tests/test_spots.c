@@ -36,7 +36,7 @@ static carried carried_by(double k_star, double e, double size) {
     p.sources.conductivity = conductivity, p.sources.power = power, p.result.temperature = found;
     p.result.least_temperature = least, p.result.largest_temperature = largest;
     trace(&p);
-    double *spots = calloc(4 * CONTACTS + fibrad_heat_patches(p.heat), sizeof *spots);
+    double *spots = calloc(5 * CONTACTS + fibrad_heat_patches(p.heat), sizeof *spots);
     if (size > 0) touch(&p, k_star, size);
     p.sources.contact_places = spots;
     solve(&p);
@@ -101,7 +101,7 @@ TEST(directions_do_not_matter) {
         p.sources.contacts = 1, p.sources.conductivity = conductivity;
         p.result.contact_flow = &carries[k], p.result.least_temperature = least, p.result.largest_temperature = largest;
         trace(&p);
-        double *spots = calloc(4 + fibrad_heat_patches(p.heat), sizeof *spots);
+        double *spots = calloc(5 + fibrad_heat_patches(p.heat), sizeof *spots);
         p.sources.contact_places = spots;
         solve(&p);
         free(spots);
@@ -135,7 +135,7 @@ static void solve_bed(bool backwards, double *carries) {
     p.result.contact_flow = carries, p.result.conducted = conducted;
     p.backwards = backwards, p.isa = backwards ? FIBRAD_ISA_SCALAR : 0;
     trace(&p);
-    double *spots = calloc(4 * contacts + fibrad_heat_patches(p.heat), sizeof *spots);
+    double *spots = calloc(5 * contacts + fibrad_heat_patches(p.heat), sizeof *spots);
     p.sources.contact_places = spots;
     solve(&p);
     free(spots);

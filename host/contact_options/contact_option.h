@@ -70,7 +70,7 @@ struct contact_state {
     uint32_t n, listed;                    /* all contacts; those of files, which come first */
     uint32_t *first, *second;              /* [n] as in fibrad_heat_sources */
     double *conductance;                   /* [n] in the unit of the library */
-    double *flow;                          /* [n] [W] */
+    double *flow, *error;                  /* [n] [W] */
     double *conducted;                     /* [spheres] [W] */
     double *gas;                           /* [n - listed] conductivities [W/(m K)] */
     double *solid;                         /* [spheres] conductivities [W/(m K)]; NULL: not needed */

@@ -198,7 +198,7 @@ module fibrad
         real(c_double) :: surroundings_error = 0
         type(c_ptr) :: wall_area = c_null_ptr, least_temperature = c_null_ptr, largest_temperature = c_null_ptr, &
             centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr, &
-            conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr
+            conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr, contact_error = c_null_ptr
     end type fibrad_heat_result
 
     type, bind(C) :: fibrad_light

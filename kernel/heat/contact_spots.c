@@ -14,16 +14,20 @@
 
 #define SPOT_LARGEST .4 /* largest radius of a spot for which a sphere adds to its resistance */
 
-#define TOUCHES 1.05 /* farthest wall whose light is known about a spot, in radii from the centre */
-#define NEAR    .8
+#define TOUCHES     1.05 /* of two surfaces: distance over that at which they touch, at most */
+#define NEAR        .8   /* cosine of the rings in which they see little else */
+#define SPREAD      .9   /* cosine of the places over which the heat of a spot is spread on patches */
+#define SPREAD_SIZE .755 /* a spot as warm in its middle has this part of their radius */
 
-#include <stdlib.h>
-#define BLUR (getenv("BLUR")?atof(getenv("BLUR")):1.85)
-#ifndef SMOOTHLY
-#define SMOOTHLY (other >= heat->spheres)
-#endif
+/* Errors of what radiation about a spot changes. They are of 120 ends at walls and between spheres: docs/accuracy.md.
+ */
+#define RADIATED_ERROR .01 /* of the whole */
+#define NEAR_ERROR     .08 /* of what is not as patches tell */
+#define STEEPER        .4  /* times 1/(2 k*): these errors are larger where a sphere conducts badly */
+
 struct spot {
     double apart, resistance; /* K, and K over power */
+    double doubt[2];          /* squares of the errors of both */
 };
 
 /* The direction from a sphere to the other end of contact k. False: it is not known, or the sphere has one temperature.
@@ -47,19 +51,16 @@ static bool direction_of_spot(const fibrad_heat *heat, uint32_t body, uint32_t o
     return distance > 0;
 }
 
-/* Lets a power enter a sphere at a direction: evenly into the own patch there. */
+/* Lets a power enter a sphere about a direction. It is spread over patches, since patterns know no single patch. */
 static void enter_at(const fibrad_heat *heat, uint32_t b, const double axis[3], double power) {
-    double area = 0;
-    const uint32_t cube = heat->config.patches, first = heat->first[b], own = fibrad_patch_of(axis, heat->side);
-    const uint16_t *on_patch = heat->division.on_patch + heat->division.first_four[b];
+    double sum = 0;
     for (int pass = 0; pass < 2; pass++)
-        for (uint32_t a = first; a < heat->first[b + 1]; a++) {
-            const uint32_t k = a - first;
-            if ((k < cube ? k : on_patch[(k - cube) / FIBRAD_HEAT_FOUR]) != own) continue;
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+            const double share = heat->solution.area[a] * fibrad_heat_within_cap(heat, b, a, axis, SPREAD);
             if (pass == 0)
-                area += heat->solution.area[a];
-            else if (area > 0)
-                heat->spots.entering[a] += power * (heat->solution.area[a] / area);
+                sum += share;
+            else if (sum > 0)
+                heat->spots.entering[a] += power * (share / sum);
         }
 }
 
@@ -99,7 +100,8 @@ static struct opposite opposite_wall(const fibrad_heat *heat, uint32_t wall, dou
 static struct opposite opposite_sphere(const fibrad_heat *heat, double r, const struct end *other, double distance,
                                        double cosine) {
     const double size = heat->scene->r[other->body], eps = heat->sources.emissivity[other->body];
-    const double sine = fibrad_min(1, fibrad_sqrt(1 - cosine * cosine) * r / size), turned = fibrad_sqrt(1 - sine * sine);
+    const double sine = fibrad_min(1, fibrad_sqrt(1 - cosine * cosine) * r / size),
+                 turned = fibrad_sqrt(1 - sine * sine);
     const uint32_t k = fibrad_rings_at(heat->rings, turned);
     return (struct opposite){fibrad_rings_sees(r, size, distance, cosine), fibrad_rings_sees(size, r, distance, turned),
                              other->known ? other->mean.sent[k] - (1 - eps) * other->mean.arriving[k]
@@ -126,8 +128,7 @@ static void look_before(const fibrad_heat *heat, const struct end *end, const st
         own[k] = opposite.sees * opposite.emitted;
         light->follows[k] = opposite.sees * bright * follows * taper;
         open[k] = 1 - opposite.sees * bright - back[k];
-        sum += end->mean.area[k] * open[k] *
-               (end->mean.arriving[k] - back[k] * end->mean.sent[k] - own[k]);
+        sum += end->mean.area[k] * open[k] * (end->mean.arriving[k] - back[k] * end->mean.sent[k] - own[k]);
         squares += end->mean.area[k] * open[k] * open[k];
     }
     for (uint32_t k = 0; k < FIBRAD_RINGS && squares > 0 && heat->rings->cosine[k] >= NEAR; k++) {
@@ -145,32 +146,55 @@ static double look_at_end(const fibrad_heat *heat, uint32_t body, uint32_t other
     end->body = body, end->known = direction_of_spot(heat, body, other, end->axis, &away);
     if (!end->known) return away;
     enter_at(heat, body, end->axis, -entering);
-    fibrad_heat_look_in_rings(heat, body, end->axis, 1, SMOOTHLY, &end->mean);
+    fibrad_heat_look_in_rings(heat, body, end->axis, 1, true, &end->mean);
     enter_at(heat, body, end->axis, entering);
     return away;
 }
 
+static double squared(double x) { return x * x; }
+
+static double error_of_radiated(double whole, double other, double uneven) {
+    return (1 + squared(STEEPER * uneven)) * (squared(RADIATED_ERROR * whole) + squared(NEAR_ERROR * other));
+}
+
+/* By how much less a spot emits if the other surface is warmer about its spot where this one is colder. Patches know
+ * this as far as the heat that is spread on them tells. */
+static double followed(const fibrad_heat *heat, const struct ring_light *light, double size,
+                       const double response[FIBRAD_RINGS]) {
+    const double spread = SPREAD_SIZE * fibrad_sqrt(2 * (1 - SPREAD));
+    double sum = 0;
+    for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
+        if (light->follows[m] > 0)
+            sum += heat->rings->share[m] * light->follows[m] * squared(response[m]) *
+                   (1 - fibrad_rings_warmth(heat->rings, spread, m) / fibrad_rings_warmth(heat->rings, size, m));
+    return sum;
+}
+
 static struct spot find_spot(const fibrad_heat *heat, const struct end *end, const struct end *other, double away,
                              double radius, fibrad_rings_work *work) {
-    double response[FIBRAD_RINGS], apart = 0;
+    double response[FIBRAD_RINGS], apart = 0, other_light = 0, other_less = 0;
     struct ring_light light;
-    if (!end->known) return (struct spot){0, 0};
+    if (!end->known) return (struct spot){0};
     const uint32_t b = end->body;
     const double r = heat->scene->r[b], eps = heat->sources.emissivity[b], k = heat->sources.conductivity[b],
-                 uneven = heat->sources.unevenness[b], slope = uneven * k / r;
+                 uneven = heat->sources.unevenness[b], slope = uneven * k / r,
+                 size = fibrad_min(radius / r, SPOT_LARGEST), to_spot = 1 / (4 * FIBRAD_PI * r * r * slope);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
-        light.emits[m] = eps, light.follows[m] = 0, light.absorbs[m] = eps * (end->mean.arriving[m] - heat->sources.emission[b]);
+        light.emits[m] = eps, light.follows[m] = 0,
+        light.absorbs[m] = eps * (end->mean.arriving[m] - heat->sources.emission[b]);
     look_before(heat, end, other, away, &light);
-    const double size = fibrad_min(radius / r, SPOT_LARGEST), blur = BLUR / fibrad_sqrt(heat->config.patches);
-    double less = fibrad_rings_spot(heat->rings, size, light.emits, uneven, work, response);
-    for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
-        if (light.follows[m] > 0)
-            less += heat->rings->share[m] * light.follows[m] * response[m] * response[m] *
-                    (1 - fibrad_rings_warmth(heat->rings, blur, m) / fibrad_rings_warmth(heat->rings, size, m));
-    for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
-        apart += heat->rings->share[m] * response[m] * (light.absorbs[m] + end->mean.absorbed[m]);
+    const double less = fibrad_rings_spot(heat->rings, size, light.emits, uneven, work, response) +
+                        followed(heat, &light, size, response);
+    for (uint32_t m = 0; m < FIBRAD_RINGS; m++) {
+        const double share = heat->rings->share[m] * response[m];
+        apart += share * (light.absorbs[m] + end->mean.absorbed[m]);
+        other_light += share * (light.absorbs[m] - eps * (end->mean.arriving[m] - heat->sources.emission[b]));
+        other_less += share * response[m] * (light.emits[m] - eps);
+    }
     return (struct spot){apart / slope,
-                         resistance_of_spot(k, radius / r, r) - less / (4 * FIBRAD_PI * r * r * slope)};
+                         resistance_of_spot(k, radius / r, r) - less * to_spot,
+                         {error_of_radiated(apart, other_light, uneven) / squared(slope),
+                          error_of_radiated(less, other_less, uneven) * squared(to_spot)}};
 }
 
 static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
@@ -200,6 +224,8 @@ static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) 
     s->next[k] = s->conductance[k] * (fibrad_contact_temperature(c, heat->sources.emission[i]) -
                                       fibrad_contact_temperature(c, heat->sources.emission[j])) +
                  s->offset[k];
+    s->doubt[k] = squared(s->conductance[k]) *
+                  (first.doubt[0] + second.doubt[0] + (first.doubt[1] + second.doubt[1]) * squared(s->next[k]));
     if (i < heat->spheres) note_spot(heat, i, first.apart - first.resistance * s->next[k]);
     if (j < heat->spheres) note_spot(heat, j, second.apart + second.resistance * s->next[k]);
     return fibrad_abs(s->next[k] - last);

@@ -531,6 +531,14 @@ static void find_joined_errors(const fibrad_heat *heat, const fibrad_heat_errors
     }
 }
 
+double fibrad_heat_flow_error(const fibrad_heat *heat, uint32_t k) {
+    const fibrad_contacts *c = &heat->contacts;
+    const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+    const double *doubt = heat->spots.entering != NULL ? heat->spots.doubt : NULL;
+    return fibrad_sqrt(squared(c->conductance[k]) * (squared(c->error[i]) + squared(c->error[j])) +
+                       (doubt != NULL ? doubt[k] : 0));
+}
+
 void fibrad_heat_find_errors(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     *errors = (fibrad_heat_errors){.all = spread_over(heat, 0, heat->patches)};
     errors->few = FEW_ON_SPHERES * heat->config.patches * heat->thin / (2.0 * heat->beams);

@@ -56,6 +56,17 @@ static void normal_on_patch(const fibrad_heat *heat, uint32_t b, uint32_t patch,
                            normal);
 }
 
+double fibrad_heat_within_cap(const fibrad_heat *heat, uint32_t b, uint32_t a, const double axis[3], double cosine) {
+    const uint32_t patch = a - heat->first[b], points = patch < heat->config.patches ? POINTS : 1;
+    double sum = 0;
+    for (uint32_t k = 0; k < points; k++) {
+        double fine[3];
+        if (points == 1) normal_on_patch(heat, b, patch, .5, .5, fine);
+        sum += fibrad_max(0, fibrad_dot(points == 1 ? fine : heat->normal + 3 * (POINTS * patch + k), axis) - cosine);
+    }
+    return sum / points;
+}
+
 /* Finds the places of a sphere that face neighbours, and which own patches are near them. Returns how many. */
 static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ranking best[2], bool *near) {
     uint32_t found = 0;

@@ -122,6 +122,10 @@ typedef struct fibrad_heat_ringed {
 void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t sphere, const double axis[3], double sign, bool smooth,
                                fibrad_heat_ringed *mean);
 
+/* The mean over patch `a` of a sphere of what the cosine to an axis exceeds `cosine` by; 0 where it does not. */
+double fibrad_heat_within_cap(const fibrad_heat *heat, uint32_t sphere, uint32_t a, const double axis[3],
+                              double cosine);
+
 /* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
  * ended, and no direction was set since. */
 void fibrad_heat_find_extremes(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_rings_work *work);

@@ -219,8 +219,7 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
 
 double fibrad_rings_warmth(const fibrad_rings *rings, double size, uint32_t k) {
     double sum = 0;
-    for (uint32_t m = 0; m < RINGS; m++)
-        sum += rings->spread[k][m] * share_of_spot(rings, size, m) / rings->share[m];
+    for (uint32_t m = 0; m < RINGS; m++) sum += rings->spread[k][m] * share_of_spot(rings, size, m) / rings->share[m];
     return sum;
 }
 

@@ -45,8 +45,8 @@ typedef struct fibrad_rings_work {
  * follows from the middles of rings. */
 void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double distance, fibrad_rings_work *work);
 
-/* What a unit of power over area that enters through a spot makes of the emission of ring k, if 1/(2 K) is 1 and nothing
- * is radiated. */
+/* What a unit of power over area that enters through a spot makes of the emission of ring k, if 1/(2 K) is 1 and
+ * nothing is radiated. */
 double fibrad_rings_warmth(const fibrad_rings *rings, double size, uint32_t k);
 
 /* The view factor to another sphere from a place of a sphere, `cosine` to the axis. */

@@ -142,7 +142,7 @@ class HeatResult(Structure):
                 ("largest_temperature", POINTER(c_double)), ("centre_temperature", POINTER(c_double)),
                 ("surface_error", POINTER(c_double)), ("centre_error", POINTER(c_double)),
                 ("conducted", POINTER(c_double)), ("wall_conducted", POINTER(c_double)),
-                ("contact_flow", POINTER(c_double))]
+                ("contact_flow", POINTER(c_double)), ("contact_error", POINTER(c_double))]
 
 
 class Light(Structure):
