@@ -196,6 +196,13 @@ void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t wall
     for (uint32_t k = 0; k < state->n; ++k) state->flow[k] /= state->per_watt, state->error[k] /= state->per_watt;
 }
 
+double contacts_error(const struct contact_state *state) {
+    double flows = 0, errors = 0;
+    for (uint32_t k = 0; k < state->n; ++k)
+        flows += state->flow[k] * state->flow[k], errors += state->error[k] * state->error[k];
+    return flows > 0 ? sqrt(errors / flows) : 0;
+}
+
 /* Writes the name of an end. */
 static void write_end(FILE *file, const struct bed *bed, const struct walls *walls, uint32_t end) {
     if (end < bed->n)
@@ -232,6 +239,7 @@ void contacts_report(const struct contact_state *state, const struct bed *bed, c
         report_value(report, "gas_conductivity", state->options->gas_value, 6);
     if (state->n > 0) report_value(report, "conductance_mean_W_K", conductance / state->per_watt / state->n, 6);
     if (state->n > 0) report_value(report, "contact_flow_mean_W", conducted / state->n, 6);
+    if (state->n > 0) report_value(report, "error_of_flows", contacts_error(state), 2);
     double square = 0, sum = 0;
     for (uint32_t i = 0; i < bed->n; ++i)
         square += state->conducted[i] * state->conducted[i], sum += state->conducted[i];

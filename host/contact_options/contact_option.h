@@ -112,6 +112,9 @@ void contacts_warn(struct warned *warned, const struct table_excess excess[2]);
 void contacts_result(struct contact_state *state, fibrad_heat_result *result);
 void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t walls);
 
+/* The root mean square error of what contacts conduct, over its root mean square. */
+double contacts_error(const struct contact_state *state);
+
 /* Writes --contact-flows of a frame. Status 0, STATUS_FILE, STATUS_USAGE or STATUS_MEMORY. */
 int contacts_write(const struct contact_state *state, const struct bed *bed, const struct walls *walls);
 

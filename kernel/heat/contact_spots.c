@@ -22,7 +22,8 @@
 /* Errors of what radiation about a spot changes. They are of 120 ends at walls and between spheres: docs/accuracy.md.
  */
 #define RADIATED_ERROR .01 /* of the whole */
-#define NEAR_ERROR     .08 /* of what is not as patches tell */
+#define NEAR_ERROR     .08 /* of what is not as patches tell, at walls */
+#define FACING_ERROR   .15 /* the same between spheres */
 #define STEEPER        .4  /* times 1/(2 k*): these errors are larger where a sphere conducts badly */
 
 struct spot {
@@ -153,8 +154,8 @@ static double look_at_end(const fibrad_heat *heat, uint32_t body, uint32_t other
 
 static double squared(double x) { return x * x; }
 
-static double error_of_radiated(double whole, double other, double uneven) {
-    return (1 + squared(STEEPER * uneven)) * (squared(RADIATED_ERROR * whole) + squared(NEAR_ERROR * other));
+static double error_of_radiated(double whole, double near, double uneven) {
+    return (1 + squared(STEEPER * uneven)) * (squared(RADIATED_ERROR * whole) + squared(near));
 }
 
 /* By how much less a spot emits if the other surface is warmer about its spot where this one is colder. Patches know
@@ -178,6 +179,7 @@ static struct spot find_spot(const fibrad_heat *heat, const struct end *end, con
     const uint32_t b = end->body;
     const double r = heat->scene->r[b], eps = heat->sources.emissivity[b], k = heat->sources.conductivity[b],
                  uneven = heat->sources.unevenness[b], slope = uneven * k / r,
+                 near = other->body < heat->spheres ? FACING_ERROR : NEAR_ERROR,
                  size = fibrad_min(radius / r, SPOT_LARGEST), to_spot = 1 / (4 * FIBRAD_PI * r * r * slope);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
         light.emits[m] = eps, light.follows[m] = 0,
@@ -193,8 +195,8 @@ static struct spot find_spot(const fibrad_heat *heat, const struct end *end, con
     }
     return (struct spot){apart / slope,
                          resistance_of_spot(k, radius / r, r) - less * to_spot,
-                         {error_of_radiated(apart, other_light, uneven) / squared(slope),
-                          error_of_radiated(less, other_less, uneven) * squared(to_spot)}};
+                         {error_of_radiated(apart, near * other_light, uneven) / squared(slope),
+                          error_of_radiated(less, near * other_less, uneven) * squared(to_spot)}};
 }
 
 static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
