@@ -173,7 +173,7 @@ static double followed(const fibrad_heat *heat, const struct ring_light *light, 
 
 static struct spot find_spot(const fibrad_heat *heat, const struct end *end, const struct end *other, double away,
                              double radius, fibrad_rings_work *work) {
-    double response[FIBRAD_RINGS], apart = 0, other_light = 0, other_less = 0;
+    double response[FIBRAD_RINGS], apart = 0, other_light = 0;
     struct ring_light light;
     if (!end->known) return (struct spot){0};
     const uint32_t b = end->body;
@@ -185,8 +185,9 @@ static struct spot find_spot(const fibrad_heat *heat, const struct end *end, con
         light.emits[m] = eps, light.follows[m] = 0,
         light.absorbs[m] = eps * (end->mean.arriving[m] - heat->sources.emission[b]);
     look_before(heat, end, other, away, &light);
-    const double less = fibrad_rings_spot(heat->rings, size, light.emits, uneven, work, response) +
-                        followed(heat, &light, size, response);
+    const double alone = fibrad_rings_spot(heat->rings, size, light.emits, uneven, work, response);
+    double other_less = followed(heat, &light, size, response);
+    const double less = alone + other_less;
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++) {
         const double share = heat->rings->share[m] * response[m];
         apart += share * (light.absorbs[m] + end->mean.absorbed[m]);
