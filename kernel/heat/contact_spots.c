@@ -162,12 +162,13 @@ static double error_of_radiated(double whole, double near, double uneven) {
  * this as far as the heat that is spread on them tells. */
 static double followed(const fibrad_heat *heat, const struct ring_light *light, double size,
                        const double response[FIBRAD_RINGS]) {
-    const double spread = SPREAD_SIZE * fibrad_sqrt(2 * (1 - SPREAD));
-    double sum = 0;
+    double sum = 0, spread[FIBRAD_RINGS], spot[FIBRAD_RINGS];
+    if (!(light->follows[0] > 0)) return 0;
+    fibrad_rings_warmth(heat->rings, SPREAD_SIZE * fibrad_sqrt(2 * (1 - SPREAD)), spread);
+    fibrad_rings_warmth(heat->rings, size, spot);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
         if (light->follows[m] > 0)
-            sum += heat->rings->share[m] * light->follows[m] * squared(response[m]) *
-                   (1 - fibrad_rings_warmth(heat->rings, spread, m) / fibrad_rings_warmth(heat->rings, size, m));
+            sum += heat->rings->share[m] * light->follows[m] * squared(response[m]) * (1 - spread[m] / spot[m]);
     return sum;
 }
 

@@ -21,6 +21,7 @@
 #define POINTS        4u   /* of an own patch, whose rings are looked up */
 #define MIDDLE_COSINE .8   /* the middle of an open place is looked for among patches of a larger cosine to it */
 #define TRIED         3u   /* hottest places that are looked at in rings, and coldest: patches tell them roughly */
+#define PATCH_COSINE  .6   /* more than the cosine to an axis differs within a patch of a sphere */
 #define APART         1e-6 /* least gap that is used, over the sum of radii: spheres may overlap */
 
 /* A place on a sphere. */
@@ -59,6 +60,7 @@ static void normal_on_patch(const fibrad_heat *heat, uint32_t b, uint32_t patch,
 double fibrad_heat_within_cap(const fibrad_heat *heat, uint32_t b, uint32_t a, const double axis[3], double cosine) {
     const uint32_t patch = a - heat->first[b], points = patch < heat->config.patches ? POINTS : 1;
     double sum = 0;
+    if (points > 1 && fibrad_dot(heat->normal + 3 * POINTS * patch, axis) < cosine - PATCH_COSINE) return 0;
     for (uint32_t k = 0; k < points; k++) {
         double fine[3];
         if (points == 1) normal_on_patch(heat, b, patch, .5, .5, fine);
@@ -121,44 +123,39 @@ static void smooth_on_patch(const fibrad_heat *heat, uint32_t b, uint32_t patch,
     }
 }
 
-/* The smooth irradiation that is nearest to that of the patches of sphere b, by degree. */
-static void fit_smooth(const fibrad_heat *heat, uint32_t b, const double axis[3], double part[SMOOTH]) {
-    double row[SMOOTH][SMOOTH + 1] = {{0}}, mean[SMOOTH];
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
-        const double area = heat->solution.area[a],
-                     arrives = area * heat->solution.radiosity[a] + heat->solution.net[a];
-        smooth_on_patch(heat, b, a - heat->first[b], axis, mean);
-        for (uint32_t l = 0; l < SMOOTH; l++) {
-            for (uint32_t m = 0; m < SMOOTH; m++) row[l][m] += area * mean[l] * mean[m];
-            row[l][SMOOTH] += arrives * mean[l];
-        }
-    }
-    fibrad_solve_linear(SMOOTH, SMOOTH + 1, row[0]);
-    for (uint32_t l = 0; l < SMOOTH; l++) part[l] = row[l][SMOOTH];
-}
-
-/* Sums of what patches of a sphere have in rings about an axis: areas, and areas times irradiation, J and light. The
- * irradiation is without its smooth part. */
-static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, const double *smooth,
+/* Sums of what patches of a sphere have in rings about an axis: areas, and areas times irradiation, J and light.
+ * smooth: not NULL: set to the smooth irradiation by degree that is nearest to that of the patches, which is taken off.
+ */
+static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, double *smooth,
                       fibrad_heat_ringed *sums) {
     const uint32_t first = heat->first[b], cube = heat->config.patches;
+    double row[SMOOTH][SMOOTH + 1] = {{0}}, in_ring[FIBRAD_RINGS][SMOOTH] = {{0}}, mean[SMOOTH];
     fibrad_zero(sums, sizeof *sums);
     for (uint32_t a = first; a < heat->first[b + 1]; a++) {
         const uint32_t points = a < first + cube ? POINTS : 1;
-        const double area = heat->solution.area[a] / points, sent = heat->solution.radiosity[a];
-        double mean[SMOOTH], less = 0;
+        const double area = heat->solution.area[a] / points, sent = heat->solution.radiosity[a],
+                     arrives = area * sent + heat->solution.net[a] / points;
         if (smooth != NULL) smooth_on_patch(heat, b, a - first, axis, mean);
-        for (uint32_t l = 0; l < SMOOTH && smooth != NULL; l++) less += smooth[l] * mean[l];
+        for (uint32_t l = 0; l < SMOOTH && smooth != NULL; l++) {
+            for (uint32_t m = 0; m < SMOOTH; m++) row[l][m] += points * area * mean[l] * mean[m];
+            row[l][SMOOTH] += points * arrives * mean[l];
+        }
         for (uint32_t k = 0; k < points && area > 0; k++) {
             double fine[3];
             if (points == 1) normal_on_patch(heat, b, a - first, .5, .5, fine);
             const double *normal = points == 1 ? fine : heat->normal + 3 * (POINTS * (a - first) + k);
             const uint32_t ring = fibrad_rings_at(heat->rings, sign * fibrad_dot(normal, axis));
             sums->area[ring] += area, sums->sent[ring] += area * sent;
-            sums->arriving[ring] += area * (sent - less) + heat->solution.net[a] / points;
+            sums->arriving[ring] += arrives;
             sums->absorbed[ring] += fibrad_heat_entering(heat, a) / points;
+            for (uint32_t l = 0; l < SMOOTH && smooth != NULL; l++) in_ring[ring][l] += area * mean[l];
         }
     }
+    if (smooth == NULL) return;
+    fibrad_solve_linear(SMOOTH, SMOOTH + 1, row[0]);
+    for (uint32_t l = 0; l < SMOOTH; l++) smooth[l] = row[l][SMOOTH];
+    for (uint32_t k = 0; k < FIBRAD_RINGS; k++)
+        for (uint32_t l = 0; l < SMOOTH; l++) sums->arriving[k] -= smooth[l] * in_ring[k][l];
 }
 
 /* Turns sums into means. Rings without patches, which are near the axis, have what the next ring has. */
@@ -173,7 +170,6 @@ static void average_rings(fibrad_heat_ringed *sums) {
 void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, bool smooth,
                                fibrad_heat_ringed *mean) {
     double part[SMOOTH], value[SMOOTH];
-    if (smooth) fit_smooth(heat, b, axis, part);
     sum_rings(heat, b, axis, sign, smooth ? part : NULL, mean);
     average_rings(mean);
     for (uint32_t k = 0; k < FIBRAD_RINGS && smooth; k++) {

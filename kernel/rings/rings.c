@@ -217,10 +217,12 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
     return fibrad_sqrt(1 - low) - fibrad_sqrt(1 - high);
 }
 
-double fibrad_rings_warmth(const fibrad_rings *rings, double size, uint32_t k) {
-    double sum = 0;
-    for (uint32_t m = 0; m < RINGS; m++) sum += rings->spread[k][m] * share_of_spot(rings, size, m) / rings->share[m];
-    return sum;
+void fibrad_rings_warmth(const fibrad_rings *rings, double size, double warmth[RINGS]) {
+    fibrad_zero(warmth, RINGS * sizeof *warmth);
+    for (uint32_t m = 0; m < RINGS; m++) {
+        const double flux = share_of_spot(rings, size, m) / rings->share[m];
+        for (uint32_t k = 0; k < RINGS && flux > 0; k++) warmth[k] += rings->spread[k][m] * flux;
+    }
 }
 
 /* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.

@@ -45,9 +45,9 @@ typedef struct fibrad_rings_work {
  * follows from the middles of rings. */
 void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double distance, fibrad_rings_work *work);
 
-/* What a unit of power over area that enters through a spot makes of the emission of ring k, if 1/(2 K) is 1 and
+/* What a unit of power over area that enters through a spot makes of the emissions of rings, if 1/(2 K) is 1 and
  * nothing is radiated. */
-double fibrad_rings_warmth(const fibrad_rings *rings, double size, uint32_t k);
+void fibrad_rings_warmth(const fibrad_rings *rings, double size, double warmth[FIBRAD_RINGS]);
 
 /* The view factor to another sphere from a place of a sphere, `cosine` to the axis. */
 double fibrad_rings_sees(double radius, double other, double distance, double cosine);
