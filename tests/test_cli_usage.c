@@ -126,7 +126,7 @@ static const struct {
     {{"factors", MONO, "--raw=yes"}, "--raw takes no argument"},
     {{"factors", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
     {{"factors", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
-    {{"factors", MONO, "--slice=x=3"}, "--slice is for pictures of a bed at one time, by --plot"},
+    {{"factors", MONO, "--slice=x=3"}, "--slice needs --plot"},
     {{"factors", MONO, "--plot=bed.svg", "--slice=r=3"}, "--slice: 'r=3' is none of x=VALUE, y=VALUE and z=VALUE"},
     {{"factors", MONO, "--plot=bed.svg", "--slice=z=99"}, "--slice: no sphere is at z = 99; spheres are from -0.000"},
     {{"factors", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},

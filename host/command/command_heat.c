@@ -145,7 +145,6 @@ static int heat_once(struct heat *h) {
     if (!status) status = heat_write(h, h->bed, &what);
     if (!status && h->options.outputs.picture)
         status = plot_heat(&h->options.picture, h->options.name, &what, &h->options.slice);
-    if (!status) status = light_profile(h);
     if (!status) heat_report(h);
     return status;
 }

@@ -136,8 +136,7 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
-    if (options->slice.axis && (!picture || options->timed))
-        return message(STATUS_USAGE, "--slice is for pictures of a bed at one time, by --plot");
+    if (options->slice.axis && !picture) return message(STATUS_USAGE, "--slice needs --plot");
     if (options->timed && is_series(options))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     int status = walls_settle(&options->walls);

@@ -40,6 +40,22 @@ option_take capacity_option, density_option, step_option;
  * options are refused. Status 0 or STATUS_USAGE. */
 int time_check(struct time_options *time, struct bed_options *bed);
 
+/* Row of a table of options, for a request with a field `profile`, without braces. */
+#define OPTION_PROFILE(request)                                                                                        \
+    0, "profile", "AXIS[:BINS]:OUT",                                                                                   \
+        "write temperatures and powers against x, y, z, or r from the axis of a cylinder, to a .csv; a bin is one "    \
+        "mean diameter [none]",                                                                                        \
+        TO_FUNCTION(profile_option, request, profile)
+
+/* Its argument. Begin with zeroes. */
+struct profile {
+    char axis;        /* 'x', 'y', 'z' or 'r' */
+    uint32_t bins;    /* 0: one mean diameter each */
+    const char *path; /* NULL: no profile */
+};
+
+option_take profile_option;
+
 /* The emissivity of a bed's open face: what spheres and walls of one temperature send out through the open faces,
  * divided by what black faces would send out. */
 struct face {
@@ -83,6 +99,7 @@ struct heat {
     struct light_options light;
     struct contact_options contacts;
     struct face face;
+    struct profile profile;
     struct quantity emissivities, solid;
     fibrad_heat_config config; /* directions 0: chosen by the emissivities of the bed */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
@@ -99,6 +116,7 @@ struct heat {
      * unit of sources.conductivity; NULL: spheres have one temperature each */
     double *conductivity, *conductivity_scaled;
     double per_watt;               /* sources.conductivity over conductivity */
+    const fibrad_wall *around;     /* the cylinder whose axis a profile along r is measured from; NULL: none */
     struct light_state lit;        /* light from outside; its options NULL: there is none */
     struct contact_state touching; /* what conducts between spheres; options NULL: nothing does */
     fibrad_heat_sources sources;   /* [K]; surroundings NaN: the bed is closed; powers in watts only in time */
@@ -187,7 +205,11 @@ void light_add(struct heat *heat);
 /* Reports what is absorbed, reflected and transmitted. */
 void light_report(struct heat *heat);
 
-/* Writes the profile, if one was asked for. Status 0, STATUS_FILE or STATUS_MEMORY. */
-int light_profile(const struct heat *heat);
+/* profile.c: finds the axis of r. Status 0, or STATUS_USAGE if there is none. */
+int profile_begin(struct heat *heat);
+
+/* Writes the profile, if one was asked for: of what the outputs have. Status 0, STATUS_USAGE, STATUS_FILE or
+ * STATUS_MEMORY. */
+int profile_write(const struct heat *heat, const struct contents *what);
 
 #endif

@@ -109,6 +109,7 @@ int heat_begin(struct heat *h, struct bed *bed) {
     if (status) return status;
     warn_levels(h);
     status = make_arrays(h);
+    if (!status) status = profile_begin(h);
     if (!status) status = find_conductivities(h);
     if (!status) status = make_triangles(h);
     if (status) return status;
@@ -170,6 +171,7 @@ int heat_write(struct heat *h, const struct bed *bed, struct contents *what) {
     if (!what->sources) what->sources = &h->sources;
     what->light = h->lit.options ? &h->lit.result : NULL;
     what->of_sides = &h->triangles;
-    const int status = bed_options_write(&h->options, bed, what);
+    int status = bed_options_write(&h->options, bed, what);
+    if (!status) status = profile_write(h, what);
     return status ? status : contacts_write(&h->touching, bed, &h->walls);
 }

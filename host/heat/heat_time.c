@@ -7,7 +7,7 @@
 #include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
-#include "plot/plot_time.h"
+#include "plot/plot_heat.h"
 
 enum { TIMES_MAX = 10000 };
 
@@ -379,13 +379,17 @@ static int run_bed(struct time_run *m, double *before) {
     if (status) return status;
     fibrad_bed_describe(h->made, &h->facts, NULL);
     status = absorb_light(m);
-    if (!status) status = light_profile(h);
     outside_at(m, 0, m->wall, &m->sources.surroundings);
     memcpy(before, m->span.temperature, h->bed->n * sizeof *before);
     if (!status) status = run_spans(m);
     progress_stop(&h->options.progress);
-    if (!status && h->options.outputs.picture)
-        status = plot_time(&h->options.picture, h->options.name, m->point, m->points);
+    if (!status && h->options.outputs.picture) {
+        memcpy(h->result.temperature, m->span.temperature, h->bed->n * sizeof *m->span.temperature);
+        memcpy(h->result.wall_temperature, m->wall, h->walls.count * sizeof *m->wall);
+        status =
+            plot_time(&h->options.picture, h->options.name, m->point, m->points,
+                      &(struct contents){.bed = h->bed, .walls = &h->walls, .result = &h->result}, &h->options.slice);
+    }
     if (!status) {
         warn_lag(m);
         warn_tables(m);

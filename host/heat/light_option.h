@@ -17,10 +17,6 @@ enum { LIGHTS_MAX = 32 };
             "absorptivity of all spheres for that light; 0 to 1, or TYPE:A,..., or a column of the file [emissivity]", \
             TO_FUNCTION(absorptivity_option, request, light.absorptivity)                                              \
     }
-#define OPTION_PROFILE(request)                                                                                        \
-    0, "profile", "AXIS[:BINS]:OUT",                                                                                   \
-        "write the absorbed light against x, y or z to a .csv; a bin is one mean diameter [none]",                     \
-        TO_FUNCTION(profile_option, request, light)
 
 /* A paragraph of --help. */
 #define LIGHT_MORE                                                                                                     \
@@ -40,9 +36,6 @@ struct light_options {
     fibrad_light light[LIGHTS_MAX]; /* [lights] lengths in the bed's unit, flux in W/m2 */
     uint32_t lights;
     struct quantity absorptivity;
-    char axis;           /* of the profile; 0: none */
-    uint32_t bins;       /* 0: one mean diameter each */
-    const char *profile; /* path */
 };
 
 /* What light does to a bed. */
@@ -57,7 +50,7 @@ struct light_state {
 };
 
 /* Functions of the rows above. Status 0 or STATUS_USAGE. */
-option_take irradiate_option, absorptivity_option, profile_option;
+option_take irradiate_option, absorptivity_option;
 
 /* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);
