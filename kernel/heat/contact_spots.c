@@ -19,8 +19,7 @@
 #define SPREAD      .9   /* cosine of the places over which the heat of a spot is spread on patches */
 #define SPREAD_SIZE .755 /* a spot as warm in its middle has this part of their radius */
 
-/* Errors of what radiation about a spot changes. They are of 120 ends at walls and between spheres: docs/accuracy.md.
- */
+/* Errors of what radiation about a spot changes, of 120 flows: docs/methods.md section 28. */
 #define RADIATED_ERROR .01 /* of the whole */
 #define NEAR_ERROR     .08 /* of what is not as patches tell, at walls */
 #define FACING_ERROR   .15 /* the same between spheres */
