@@ -38,7 +38,7 @@ enum { CONTACT_FILES_MAX = 8 };
          TO_NUMBER(request, contacts.jump, 0, 1)},                                                                     \
     {                                                                                                                  \
         0, "contact-flows", "OUT",                                                                                     \
-            "write what each contact conducts: .csv with i,j,W/K,W; - for standard output [none]",                     \
+            "write what each contact conducts: .csv with i,j,W/K,W,error_W; - for standard output [none]",             \
             TO_TEXT(request, contacts.flows)                                                                           \
     }
 

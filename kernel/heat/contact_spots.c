@@ -151,10 +151,10 @@ static double look_at_end(const fibrad_heat *heat, uint32_t body, uint32_t other
     return away;
 }
 
-static double squared(double x) { return x * x; }
+static double square_of(double x) { return x * x; }
 
 static double error_of_radiated(double whole, double near, double uneven) {
-    return (1 + squared(STEEPER * uneven)) * (squared(RADIATED_ERROR * whole) + squared(near));
+    return (1 + square_of(STEEPER * uneven)) * (square_of(RADIATED_ERROR * whole) + square_of(near));
 }
 
 /* By how much less a spot emits if the other surface is warmer about its spot where this one is colder. Patches know
@@ -167,7 +167,7 @@ static double followed(const fibrad_heat *heat, const struct ring_light *light, 
     fibrad_rings_warmth(heat->rings, size, spot);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
         if (light->follows[m] > 0)
-            sum += heat->rings->share[m] * light->follows[m] * squared(response[m]) * (1 - spread[m] / spot[m]);
+            sum += heat->rings->share[m] * light->follows[m] * square_of(response[m]) * (1 - spread[m] / spot[m]);
     return sum;
 }
 
@@ -196,8 +196,8 @@ static struct spot find_spot(const fibrad_heat *heat, const struct end *end, con
     }
     return (struct spot){apart / slope,
                          resistance_of_spot(k, radius / r, r) - less * to_spot,
-                         {error_of_radiated(apart, near * other_light, uneven) / squared(slope),
-                          error_of_radiated(less, near * other_less, uneven) * squared(to_spot)}};
+                         {error_of_radiated(apart, near * other_light, uneven) / square_of(slope),
+                          error_of_radiated(less, near * other_less, uneven) * square_of(to_spot)}};
 }
 
 static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
@@ -227,8 +227,8 @@ static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) 
     s->next[k] = s->conductance[k] * (fibrad_contact_temperature(c, heat->sources.emission[i]) -
                                       fibrad_contact_temperature(c, heat->sources.emission[j])) +
                  s->offset[k];
-    s->doubt[k] = squared(s->conductance[k]) *
-                  (first.doubt[0] + second.doubt[0] + (first.doubt[1] + second.doubt[1]) * squared(s->next[k]));
+    s->doubt[k] = square_of(s->conductance[k]) *
+                  (first.doubt[0] + second.doubt[0] + (first.doubt[1] + second.doubt[1]) * square_of(s->next[k]));
     if (i < heat->spheres) note_spot(heat, i, first.apart - first.resistance * s->next[k]);
     if (j < heat->spheres) note_spot(heat, j, second.apart + second.resistance * s->next[k]);
     return fibrad_abs(s->next[k] - last);
