@@ -236,8 +236,10 @@ demo: deps
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
 
-## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
+## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems; all sources of the last commit as a .tar.gz
+VERSION = $(shell sed -n 's/^\#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h)
 dist: $(BUILD)/dist/fibrad.c
+	git archive --prefix=fibrad-$(VERSION)/ -o $(BUILD)/dist/fibrad-$(VERSION).tar.gz HEAD
 
 $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/join.sh
 	kernel/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
@@ -248,7 +250,7 @@ WITH_MPI = BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(M
 ## test: install missing packages, build and run all tests but those of nightly
 test: deps
 	@echo "Building the tests"
-	@$(MAKE) -s --no-print-directory programs all man dist
+	@$(MAKE) -s --no-print-directory programs all man $(BUILD)/dist/fibrad.c
 	@$(WITH_MPI) tests/run.sh $(filter-out $(NIGHTLY) $(NIGHTLY:%.c=$(BUILD)/%),$(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS))
 
 ## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
@@ -306,8 +308,15 @@ format:
 
 BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
 
+# these end with the processor time that they took; programs are built before
+TIMED = bench bench-quick skips stress mutate reproduce
+.PHONY: $(TIMED:%=run-%)
+$(TIMED):
+	@bash -c 'TIMEFORMAT="make $@: processor time %U s, system %S s"; time "$$0" "$$@"' $(MAKE) -s --no-print-directory run-$@
+
 ## bench: build and run all benches; CSV into build/bench, plots into docs/figures
-bench: $(BENCH_PROGRAMS) bench-peers bench-counted
+bench bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted
+run-bench:
 	@set -e; for b in $(ALL_BENCHES); do \
 	    test -x $$b || continue; echo "$$b > $$b.csv"; $(BENCH_ENV) $$b > $$b.csv; done
 	gnuplot -e "in='$(BUILD)/bench/bench_beam.csv'; peer='$(BUILD)/bench/bench_embree.csv'; \
@@ -315,7 +324,7 @@ bench: $(BENCH_PROGRAMS) bench-peers bench-counted
 	gnuplot -e "in='$(BUILD)/bench/bench_scale.csv'; out='$(BUILD)/bench/scale.svg'" bench/plot_scale.gp
 
 ## bench-quick: build all benches and run the smallest case of each, to see that they work
-bench-quick: $(BENCH_PROGRAMS) bench-peers bench-counted
+run-bench-quick:
 	@set -e; mkdir -p $(BUILD)/bench/quick; for b in $(notdir $(ALL_BENCHES)); do \
 	    test -x $(BUILD)/bench/$$b || continue; echo "$$b quick"; \
 	    $(BENCH_ENV) $(BUILD)/bench/$$b quick > $(BUILD)/bench/quick/$$b.csv; done
@@ -337,11 +346,12 @@ bench-counted: $(filter-out %/libfibrad.a,$(LIBRARIES))
 	*) echo "Instructions are only counted on x86-64 and aarch64" ;; esac
 
 ## skips: time that skipped steps save; each skip without an argument is turned off in a copy of the kernel (some minutes)
-skips:
+run-skips:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" bench/skips.sh
 
 ## stress: attacks on the numerics, one line for each attack (some minutes)
 stress: $(BUILD)/tests/test_stress $(BUILD)/tests/test_areas
+run-stress:
 	STRESS=1 CK_DEFAULT_TIMEOUT=3600 $(BUILD)/tests/test_stress
 	$(BUILD)/tests/test_areas
 
@@ -354,7 +364,7 @@ golden: $(BUILD)/fibrad
 	BUILD=$(BUILD) MAKE="$(MAKE)" HOSTCC="$(HOSTCC)" tests/check_bits.sh pin
 
 ## mutate: break the kernel in one line after the other and see that the tests notice (some minutes)
-mutate:
+run-mutate:
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/mutate.sh
 
 # One build under the sanitizers serves the fuzzers and the tests: of scalar code and of the widest lanes that run here.
@@ -421,7 +431,7 @@ clang-warnings: need-libraries need-check
 	$(foreach isa,$(ISAS),$(call clang_warns,$(KERNEL_FLAGS) $(FLAGS_$(isa)) \
 	    -DFIBRAD_LANES_HEADER='"base/lanes/vec_$(isa).h"' -DFIBRAD_ISA_SUFFIX=_$(isa),$(LANED)) &&) true
 	$(call clang_warns,$(SIMPLE_FLAGS),$(SIMPLE))
-	$(call clang_warns,$(TEST_FLAGS),$(HOST) host/main.c $(TESTS))
+	$(call clang_warns,$(TEST_FLAGS),$(HOST) host/main.c $(TESTS) $(BENCHES) $(COUNTED))
 
 LINT_FLAGS   = -Ikernel -Ihost -D_XOPEN_SOURCE=700
 LINT_SCALAR  = -DFIBRAD_LANES_HEADER='"base/lanes/vec_scalar.h"' -DFIBRAD_ISA_SUFFIX=_scalar
@@ -441,7 +451,9 @@ cppcheck:
 	    --suppress=missingIncludeSystem --suppressions-list=.cppcheck $(LINT_FLAGS) $(LINT_SCALAR) kernel host
 
 ## nightly: what .ci/run leaves out: other compilers and machines, static checks, all of the couplings, long fuzzing
-nightly: deps-nightly bits threads lint clang-warnings bench-quick skips programs couple
+nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress programs couple
+	$(MAKE) reproduce FIGURES=$(BUILD)/figures
+	for csv in $(filter-out %/table1.csv,$(wildcard docs/figures/*.csv)); do diff -I ^table1, $$csv $(BUILD)/figures || exit 1; done
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
@@ -453,9 +465,11 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips program
 	$(MAKE) fuzz $(ALL_ISAS) FUZZ_SECONDS=900
 
 ## reproduce: the numbers of the papers beside ours, and their plots into docs/figures
+FIGURES   = docs/figures
 reproduce: $(BUILD)/fibrad
-	$(BUILD)/fibrad reproduce -o docs/figures
-	gnuplot -e "folder='docs/figures'" bench/plot_papers.gp
+run-reproduce:
+	$(BUILD)/fibrad reproduce -o $(FIGURES)
+	gnuplot -e "folder='$(FIGURES)'" bench/plot_papers.gp
 
 # installs the named Debian packages that are missing
 DEPS = .ci/deps
@@ -496,8 +510,7 @@ install: install-lib $(BUILD)/fibrad man
 PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
 
 # installs files for pkg-config
-install_pc = version=$$(sed -n 's/^\#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); for pc in $(1:.in=); do \
-	    sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" $$pc.in \
+install_pc = for pc in $(1:.in=); do sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' $$pc.in \
 	        > $(DESTDIR)$(PREFIX)/lib/pkgconfig/$${pc\#\#*/} || exit 1; done
 
 ## install-lib: install without the program

@@ -98,7 +98,7 @@ static void write_command(char *text, size_t size, const char *folder, const str
         fprintf(command, ":temperature=%.17g:emissivity=%.17g", 1000 * room->temperature[room->spheres + wall],
                 room->emissivity[room->spheres + wall]);
     }
-    fputs(" --quiet", command);
+    fprintf(command, " --quiet 2>%s/messages", folder); /* warnings of walls that are open meshes */
     fclose(command);
 }
 

@@ -126,7 +126,7 @@ static void compare(int scene, const struct room *room, const struct truth *trut
 
 int main(int argc, char **argv) {
     static const fibrad_heat_config configs[] = {
-        {168, 64, 96, 0, 0, 0}, {672, 64, 96, 0, 0, 0}, {2688, 64, 384, 0, 0, 0}, {8000, 64, 384, 0, 0, 0}};
+        {168, 64, 96, 0, 0}, {672, 64, 96, 0, 0}, {2688, 64, 384, 0, 0}, {8000, 64, 384, 0, 0}};
     enum { CONFIGS = sizeof configs / sizeof *configs };
     static struct honesty all[CONFIGS];
     const int quick = argc > 1 && strcmp(argv[1], "quick") == 0, given = argc > 1 && !quick;

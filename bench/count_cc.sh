@@ -12,14 +12,14 @@ case " $* " in
 *" -c "*" -o "*) ;;
 *) exec "$@" ;;
 esac
-compiler=$1 object=$(echo " $* " | sed 's/.* -o \([^ ]*\) .*/\1/')
+compiler=$(echo "$*" | sed 's/ -.*//') object=$(echo " $* " | sed 's/.* -o \([^ ]*\) .*/\1/')
 for argument; do
     shift
     test "$argument" != "$object" || argument=$object.plain
     set -- "$@" "$argument"
 done
 "$@" -g0 -S -MF "${object%.o}.d" -MT "$object"
-awk -v machine="$("$compiler" -dumpmachine)" '
+awk -v machine="$($compiler -dumpmachine)" '
 function flush(   k) {
     if (count > 0 && machine ~ /^aarch64/) {
         print "\tstp x16, x17, [sp, -16]!\n\tadrp x16, instructions_counted"
@@ -39,5 +39,5 @@ function flush(   k) {
 {line[held++] = $0; count++}
 /^\t(j|ret|notrack jmp|(b|br|b\.?[a-z][a-z]|cbn?z|tbn?z)\t)/ {flush()}
 END {flush()}' "$object.plain" >"$object.s"
-"$compiler" -c "$object.s" -o "$object"
+$compiler -c "$object.s" -o "$object"
 rm "$object.plain" "$object.s"

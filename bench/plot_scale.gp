@@ -7,6 +7,7 @@ set output out
 set datafile separator ","
 set datafile commentschars "#"
 set logscale x
+set xrange [100:1e6]
 set format x "10^{%T}"
 set xlabel "spheres"
 set ylabel "processor time per circle (sphere and line) [microseconds]"

@@ -1,5 +1,5 @@
 /* light_option.c - light from outside that falls on a bed. SPDX-License-Identifier: MIT */
-#include "heat/light_option.h"
+#include "heat/heat.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* lit_bed.c - what a bed absorbs of light from outside, and its profile along an axis. SPDX-License-Identifier: MIT */
-#include <math.h>
+#include <gsl/gsl_math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,16 +53,11 @@ int light_absorb(struct heat *h, double unit, fibrad_heat_sources *sources) {
     fibrad_light scaled[LIGHTS_MAX];
     if (!options) return FIBRAD_OK;
     for (uint32_t k = 0; k < options->lights; ++k) scaled[k] = options->light[k], scaled[k].flux *= unit;
-    fibrad_light_sources light = {.lights = options->lights,
-                                  .light = scaled,
-                                  .absorptivity = state->absorptivity,
-                                  .wall_absorptivity = state->of_walls};
-    state->result = (fibrad_light_result){.absorbed = state->absorbed,
-                                          .absorbed_first = state->first,
-                                          .absorbed_error = state->error,
-                                          .wall_absorbed = state->wall,
-                                          .wall_absorbed_first = state->wall_first,
-                                          .wall_absorbed_error = state->wall_error};
+    fibrad_light_sources light = {.lights = options->lights, .light = scaled, .absorptivity = state->absorptivity};
+    light.wall_absorptivity = state->of_walls;
+    state->result = (fibrad_light_result){.absorbed = state->absorbed, .wall_absorbed = state->wall};
+    state->result.absorbed_first = state->first, state->result.wall_absorbed_first = state->wall_first;
+    state->result.absorbed_error = state->error, state->result.wall_absorbed_error = state->wall_error;
     const int status = fibrad_bed_shine(h->made, &light, &state->result);
     state->failed = status;
     if (!status) add_absorbed(h, sources);
@@ -105,6 +100,40 @@ void light_scale(struct heat *h, double factor) {
     r->error_patches *= factor;
 }
 
+/* Adds the error of the absorbed light to that of a temperature that was found. conducts: what contacts and films
+ * conduct for each kelvin. */
+static void add_to_temperature(const struct heat *h, double area, double emissivity, double conducts, double light,
+                               double temperature, double *error) {
+    const double slope = 4 * h->sources.sigma * gsl_pow_3(temperature) * area * emissivity + conducts;
+    if (slope > 0) *error = hypot(*error, light / slope);
+}
+
+/* The same of all temperatures. */
+static void add_to_temperatures(struct heat *h) {
+    const fibrad_heat_sources *s = &h->sources;
+    const fibrad_heat_result *r = &h->result;
+    const struct light_state *state = &h->lit;
+    double *conducts = calloc(h->bed->n + WALLS_MAX, sizeof *conducts);
+    for (uint32_t i = 0; conducts && s->film && i < h->bed->n; ++i) conducts[i] = s->film[i];
+    for (uint32_t k = 0; conducts && s->wall_film && k < h->walls.count; ++k) conducts[h->bed->n + k] = s->wall_film[k];
+    for (uint32_t k = 0; conducts && k < s->contacts; ++k)
+        for (int end = 0; end < 2 && s->contact_first[k] != s->contact_second[k]; ++end)
+            conducts[end ? s->contact_second[k] : s->contact_first[k]] += s->conductance[k];
+    for (uint32_t i = 0; i < h->bed->n && conducts; ++i) {
+        double *const errors[] = {r->temperature_error, r->surface_error, r->centre_error};
+        const double area = 4 * M_PI * gsl_pow_2(h->bed->r[i]);
+        for (int k = 0; k < 3 && isnan(s->temperature[i]); ++k)
+            if (errors[k])
+                add_to_temperature(h, area, s->emissivity[i], conducts[i], state->error[i], r->temperature[i],
+                                   &errors[k][i]);
+    }
+    for (uint32_t k = 0; k < h->walls.count && conducts; ++k)
+        if (isnan(s->wall_temperature[k]) && !s->insulated[k])
+            add_to_temperature(h, r->wall_area[k], s->wall_emissivity[k], conducts[h->bed->n + k], state->wall_error[k],
+                               r->wall_temperature[k], &r->wall_temperature_error[k]);
+    free(conducts);
+}
+
 void light_add(struct heat *h) {
     const struct light_state *state = &h->lit;
     const fibrad_light_result *light = &state->result;
@@ -112,6 +141,7 @@ void light_add(struct heat *h) {
     fibrad_heat_result *result = &h->result;
     double square = 0;
     if (!state->options) return;
+    if (!h->given.timed) add_to_temperatures(h);
     for (uint32_t i = 0; i < spheres; ++i) {
         result->power[i] += state->absorbed[i];
         if (isnan(h->sources.temperature[i])) continue;

@@ -1,5 +1,4 @@
-/* plot_heat.c - pictures of temperatures and net powers, at one time and in time, by gnuplot. SPDX-License-Identifier:
- * MIT */
+/* plot_heat.c - pictures of temperatures and powers, also in time, by gnuplot. SPDX-License-Identifier: MIT */
 #include "plot/plot_heat.h"
 
 #include <math.h>

@@ -1,5 +1,4 @@
-/* plot_heat.h - pictures of temperatures and net powers, at one time and in time, by gnuplot. SPDX-License-Identifier:
- * MIT */
+/* plot_heat.h - pictures of temperatures and powers, also in time, by gnuplot. SPDX-License-Identifier: MIT */
 #ifndef PLOT_HEAT_H
 #define PLOT_HEAT_H
 

@@ -6,7 +6,6 @@
  *     apart + resistance times the power that enters,
  *
  * apart being due to light and to other contacts. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/vector.h"
 #include "heat/solution.h"
@@ -185,7 +184,8 @@ static struct spot find_spot(const fibrad_heat *heat, const struct end *end, con
         light.emits[m] = eps, light.follows[m] = 0,
         light.absorbs[m] = eps * (end->mean.arriving[m] - heat->sources.emission[b]);
     look_before(heat, end, other, away, &light);
-    const double alone = fibrad_rings_spot(heat->rings, size, light.emits, uneven, work, response);
+    const double alone =
+        fibrad_rings_spot(heat->rings, size, light.emits, uneven, fibrad_heat_biot(heat, b), work, response);
     double other_less = followed(heat, &light, size, response);
     const double less = alone + other_less;
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++) {

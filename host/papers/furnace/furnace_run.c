@@ -1,5 +1,5 @@
 /* furnace_run.c - the methods for a box with a participating medium, by OpenMP. SPDX-License-Identifier: MIT */
-#include "papers/furnace/furnace_run.h"
+#include "papers/furnace/furnace.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/progress.h"
 
@@ -208,9 +207,7 @@ int furnace_run(const fibrad_furnace_config *config, const struct furnace_option
     if (status) return status;
     status = options->method == FURNACE_MC ? furnace_monte_carlo(run, options) : furnace_heat_flux(run, options);
     run->seconds = progress_clock() - begun;
-    for (size_t k = 0; k < furnace_cells(run) && !status; k++)
-        if (!(run->at.e[k] > 0))
-            status = message(STATUS_INPUT, "no T > 0 in some cells: more bundles are needed, or a weaker sink");
+    for (size_t k = 0; k < furnace_cells(run) && !status; k++) run->cold |= !(run->at.e[k] > 0);
     return status;
 }
 

@@ -5,7 +5,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/progress.h"
@@ -78,6 +77,7 @@ static int run_experiment(struct reproduce *reproduce, int which, const char *di
     printf("\n%s: %s\n", name, experiments[which].what);
     const double begun = progress_clock();
     status = experiments[which].run(reproduce);
+    fflush(stdout); /* so that lines stay whole where both go to one file */
     fprintf(stderr, "%s: %.1f s\n", name, progress_clock() - begun);
     return output_close(&data, status ? status : interrupt_status());
 }

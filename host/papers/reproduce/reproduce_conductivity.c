@@ -19,7 +19,7 @@ static const double emissivities[EMISSIVITIES] = {.2, .4, .6, .8, 1};
 static int grey_conduction(const struct bed *bed, double emissivity, uint32_t paths, double *factor) {
     struct progress bar = {0};
     fibrad_run run = {.threads = 1, .progress = progress_stage, .context = &bar};
-    struct conduction result;
+    struct conduction result = {0};
     double *e = malloc(bed->n * sizeof *e);
     unsigned char *emits = calloc(bed->n, 1);
     const struct conduction_rule rule = {.emissivity = e, .axis = -1, .paths = paths};
