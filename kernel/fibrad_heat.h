@@ -171,7 +171,7 @@ typedef struct fibrad_heat_sources {
     const double *film;                 /* sigma K^3 L^2, [spheres], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
     const double *gas;                  /* K, [spheres], temperature of the gas at a film; NULL without `film` */
     const double *wall_film, *wall_gas; /* the same, [walls] */
-    double *contact_places; /* [4 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
+    double *contact_places; /* [5 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
 } fibrad_heat_sources;
 
 /* Zeroes the sources, sets sigma = FIBRAD_STEFAN_BOLTZMANN, and sets surroundings = NaN. NaN is refused, so that no
@@ -255,6 +255,7 @@ typedef struct fibrad_heat_result {
     double *conducted;              /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
     double *wall_conducted;         /* sigma K^4 L^2, [walls], out: part of wall_power, through contacts; may be NULL */
     double *contact_flow;           /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */
+    double *contact_error;          /* sigma K^4 L^2, [contacts], out: estimated error of contact_flow; may be NULL */
 } fibrad_heat_result;
 
 /* Reads the solution.

@@ -34,8 +34,8 @@ TEST(a_row_conducts) {
     assert_near(value_of("spheres_conduction_W"), -40, 1e-9);
     ck_assert_double_eq(value_of("contacts"), 3);
     char *text = read_file(flows);
-    assert_begins(text, "i,j,W/K,W\n1,0,0.5,");
-    assert_has(text, "\n0,zmin,1,40\n");
+    assert_begins(text, "i,j,W/K,W,error_W\n1,0,0.5,");
+    assert_has(text, "\n0,zmin,1,40,0\n");
     assert_has(read_file(q), "T_error_K,q_radiation_W,q_conduction_W,body\n");
 }
 
@@ -308,4 +308,22 @@ TEST(options_at_fault) {
     FAIL_WITH(2, "conductivity", row(), "--emissivity", "0.8", "--contacts", "lens", "--contact-conductivity", "3",
               "--steady", "--temperature", "0");
     assert_has(said, "--contacts and --gas-conductivity need a --temperature above 0 K");
+}
+
+/* A sphere that conducts inside, between plates: with --error its flows are no worse, and the summary says what they
+ * err by. 198.52 and 150.39 W: tests/test_spots.c. */
+TEST(errors_of_flows) {
+    const char *flows = in_folder("flows.csv"), *errors[] = {"0.01", "0.002"};
+    write_file("one.csv", "x,y,z,r\n0,0,.5,.5\n");
+    for (int k = 0; k < 2; ++k) {
+        SUCCEED("heat", in_folder("one.csv"), "--length-unit", "m", "--emissivity", "0.8", "--power", "0", "--wall",
+                "zmin:at=0:temperature=900:emissivity=1", "--wall", "zmax:at=1:temperature=1000:emissivity=1",
+                "--ambient", "900", "--solid-conductivity", "100", "--contacts",
+                contacts("i,j,W/K\n0,zmin,6\n0,zmax,6\n"), "--contact-flows", flows, "--error", errors[k]);
+        assert_near(column(flows, 0, 3), 198.52, .01);
+        assert_near(column(flows, 1, 3), -150.39, .01);
+        for (int i = 0; i < 2; ++i) ck_assert(column(flows, i, 4) > .1 && column(flows, i, 4) < 3);
+        ck_assert_double_le(value_of("error_of_flows"), value_of("error_reached"));
+        ck_assert_double_le(.0005, value_of("error_of_flows"));
+    }
 }

@@ -36,7 +36,7 @@ static carried carried_by(double k_star, double e, double size) {
     p.sources.conductivity = conductivity, p.sources.power = power, p.result.temperature = found;
     p.result.least_temperature = least, p.result.largest_temperature = largest;
     trace(&p);
-    double *spots = calloc(4 * CONTACTS + fibrad_heat_patches(p.heat), sizeof *spots);
+    double *spots = calloc(5 * CONTACTS + fibrad_heat_patches(p.heat), sizeof *spots);
     if (size > 0) touch(&p, k_star, size);
     p.sources.contact_places = spots;
     solve(&p);
@@ -101,7 +101,7 @@ TEST(directions_do_not_matter) {
         p.sources.contacts = 1, p.sources.conductivity = conductivity;
         p.result.contact_flow = &carries[k], p.result.least_temperature = least, p.result.largest_temperature = largest;
         trace(&p);
-        double *spots = calloc(4 + fibrad_heat_patches(p.heat), sizeof *spots);
+        double *spots = calloc(5 + fibrad_heat_patches(p.heat), sizeof *spots);
         p.sources.contact_places = spots;
         solve(&p);
         free(spots);
@@ -135,7 +135,7 @@ static void solve_bed(bool backwards, double *carries) {
     p.result.contact_flow = carries, p.result.conducted = conducted;
     p.backwards = backwards, p.isa = backwards ? FIBRAD_ISA_SCALAR : 0;
     trace(&p);
-    double *spots = calloc(4 * contacts + fibrad_heat_patches(p.heat), sizeof *spots);
+    double *spots = calloc(5 * contacts + fibrad_heat_patches(p.heat), sizeof *spots);
     p.sources.contact_places = spots;
     solve(&p);
     free(spots);
@@ -155,4 +155,85 @@ TEST(a_bed_with_contacts) {
     solve_bed(false, carries);
     solve_bed(true, backwards);
     ck_assert_mem_eq(carries, backwards, sizeof carries);
+}
+
+/* What a contact carries, and its estimate. The numbers are from rings in finer steps: series of Legendre polynomials
+ * for conduction, spots of one temperature, and view factors between all rings, of the plane as well. */
+struct carrier {
+    double conductivity[2], emissivity[2], size, radius; /* radius 0: the second is the plane below */
+    double warm[2], surroundings, power, flow;
+};
+static void assert_carries(const struct carrier *at, double bar) {
+    const bool plane = at->radius == 0;
+    double carries, error, *k = (double[]){at->conductivity[0], at->conductivity[1]};
+    OWNED_PROBLEM p = problem_of(plane ? BED({0, 0, .5, .5}) : BED({0, 0, .5, .5}, {0, 0, 1 + at->radius, at->radius}),
+                                 NAN, at->emissivity[0]);
+    p.sources.sigma = FIBRAD_STEFAN_BOLTZMANN, p.sources.surroundings = at->surroundings;
+    if (plane) p.walls = (struct walls){.planes = 16}, p.wall_temperature[4] = at->warm[1];
+    if (plane) p.wall_emissivity[4] = at->emissivity[1];
+    if (!plane) p.temperature[0] = at->warm[0], p.temperature[1] = at->warm[1], p.emissivity[1] = at->emissivity[1];
+    first[0] = 0, second[0] = 1, power[0] = at->power;
+    conductance[0] = 4 * at->size * .5 / (1 / k[0] + (plane ? 0 : 1 / k[1]));
+    p.sources.conductivity = k, p.sources.power = plane ? power : NULL, p.sources.contacts = 1;
+    p.sources.contact_first = first, p.sources.contact_second = second, p.sources.conductance = conductance;
+    p.result.contact_flow = &carries, p.result.contact_error = &error, p.result.temperature = found;
+    trace(&p);
+    double *spots = calloc(5 + fibrad_heat_patches(p.heat), sizeof *spots);
+    p.sources.contact_places = spots;
+    solve(&p);
+    free(spots);
+    assert_near(carries, at->flow, bar);
+    ck_assert_double_le(fabs(carries - at->flow), 2 * error + 1e-3 * fabs(at->flow));
+    ck_assert_double_le(error, .1 * fabs(at->flow));
+}
+
+static const struct carrier at_plane[] = {
+    {{11.143}, {.3, .1}, .02, 0, {0, 1000}, 700, 0, -95.9189},
+    {{18.144}, {.6, .4}, .02, 0, {0, 900}, 1100, 0, 74.6443},
+    {{68.04}, {1, .1}, .03, 0, {0, 900}, 1100, 0, 715.037},
+    {{41.785}, {.3, .4}, .06, 0, {0, 1000}, 700, 0, -750.464},
+    {{69.642}, {.9, .1}, .1, 0, {0, 1000}, 700, 0, -3228.48},
+    {{113.4}, {1, .4}, .1, 0, {0, 900}, 1100, 0, 3102.02},
+    {{75.403}, {.73, .93}, .088, 0, {0, 690}, 1047, 0, 2374.81},
+    {{329.721}, {.84, .43}, .065, 0, {0, 840}, 867, -2310, 476.332},
+    {{453.6}, {.6, .4}, .06, 0, {0, 900}, 1100, 0, 7467.78},
+};
+LOOP_TEST(a_plane_takes, 9) { assert_carries(&at_plane[_i], _i < 2 ? .03 : .01); }
+
+static const struct carrier facing[] = {
+    {{41.785, 41.785}, {.8, .8}, .1, .3, {1000, 700}, 600, 0, 1268.92},
+    {{41.785, 41.785}, {.4, .4}, .06, .5, {1000, 700}, 1000, 0, 791.626},
+    {{69.642, 69.642}, {1, 1}, .1, .3, {1000, 700}, 800, 0, 2134.3},
+    {{110.285, 236.45}, {.85, .29}, .089, .37, {1125, 823}, 1062, 0, 4226},
+    {{139.284, 139.284}, {1, 1}, .06, .5, {1000, 700}, 800, 0, 2303.48},
+    {{173.69, 139.498}, {.41, .6}, .098, .28, {771, 963}, 674, 0, -2988.01},
+    {{407.935, 155.56}, {.22, .43}, .1, .27, {1036, 896}, 633, 0, 3003.69},
+};
+LOOP_TEST(unlike_spheres_exchange, 7) { assert_carries(&facing[_i], .015); }
+
+/* A sphere between black plates, which see nothing else: the light that arrives is known exactly. */
+LOOP_TEST(both_plates_take, 3) {
+    static const struct plates {
+        double k, e, flow[2];
+    } of[] = {{20, .6, {23.5324, -12.6349}}, {100, .8, {198.516, -150.387}}, {400, .8, {1074.28, -901.215}}};
+    const struct plates *at = &of[_i];
+    double flows[2], error[2], k = at->k, none = 0;
+    OWNED_PROBLEM p = problem_of(BED({0, 0, .5, .5}), NAN, at->e);
+    p.sources.sigma = FIBRAD_STEFAN_BOLTZMANN, p.sources.surroundings = 900;
+    p.walls = (struct walls){.planes = 48, .at = {0, 0, 0, 0, 0, 1}};
+    p.wall_temperature[4] = 900, p.wall_temperature[5] = 1000;
+    for (uint32_t i = 0; i < 2; i++) first[i] = 0, second[i] = 1 + i, conductance[i] = 4 * k * .03 * .5;
+    p.sources.conductivity = &k, p.sources.power = &none, p.sources.contacts = 2;
+    p.sources.contact_first = first, p.sources.contact_second = second, p.sources.conductance = conductance;
+    p.result.contact_flow = flows, p.result.contact_error = error;
+    trace(&p);
+    double *spots = calloc(10 + fibrad_heat_patches(p.heat), sizeof *spots);
+    p.sources.contact_places = spots;
+    solve(&p);
+    free(spots);
+    for (int i = 0; i < 2; i++) {
+        assert_near(flows[i], at->flow[i], _i == 0 ? .03 : .01);
+        ck_assert_double_le(fabs(flows[i] - at->flow[i]), 2 * error[i]);
+        ck_assert_double_le(error[i], .1 * fabs(at->flow[i]));
+    }
 }

@@ -91,9 +91,10 @@ static int join_contacts(struct contact_state *state, uint32_t spheres, struct c
     const size_t n = (size_t)lines->n + found;
     const int status = contacts_resize(lines, n + 1);
     if (status) return status;
-    state->flow = calloc(n + 1, sizeof *state->flow), state->gas = calloc(found + (size_t)1, sizeof *state->gas);
+    state->flow = calloc(n + 1, sizeof *state->flow), state->error = calloc(n + 1, sizeof *state->error);
+    state->gas = calloc(found + (size_t)1, sizeof *state->gas);
     state->conducted = calloc(spheres + (size_t)1, sizeof *state->conducted);
-    if (!state->flow || !state->gas || !state->conducted) return message_memory();
+    if (!state->flow || !state->error || !state->gas || !state->conducted) return message_memory();
     for (uint32_t k = 0; k < lines->n; ++k) lines->conductance[k] *= state->per_watt;
     for (uint32_t k = 0; k < found; ++k)
         lines->first[lines->n + k] = state->list->first[k], lines->second[lines->n + k] = state->list->second[k];
@@ -127,6 +128,7 @@ void contacts_free(struct contact_state *state) {
     free(state->second);
     free(state->conductance);
     free(state->flow);
+    free(state->error);
     free(state->gas);
     free(state->solid);
     free(state->conducted);
@@ -183,13 +185,21 @@ void contacts_follow(struct contact_state *state, const struct bed *bed, const d
 void contacts_result(struct contact_state *state, fibrad_heat_result *result) {
     if (!state->options) return;
     result->conducted = state->conducted, result->wall_conducted = state->wall, result->contact_flow = state->flow;
+    result->contact_error = state->error;
 }
 
 void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t walls) {
     if (!state->options) return;
     for (uint32_t i = 0; i < spheres; ++i) state->conducted[i] /= state->per_watt;
     for (uint32_t k = 0; k < walls; ++k) state->wall[k] /= state->per_watt;
-    for (uint32_t k = 0; k < state->n; ++k) state->flow[k] /= state->per_watt;
+    for (uint32_t k = 0; k < state->n; ++k) state->flow[k] /= state->per_watt, state->error[k] /= state->per_watt;
+}
+
+double contacts_error(const struct contact_state *state) {
+    double flows = 0, errors = 0;
+    for (uint32_t k = 0; k < state->n; ++k)
+        flows += state->flow[k] * state->flow[k], errors += state->error[k] * state->error[k];
+    return flows > 0 ? sqrt(errors / flows) : 0;
 }
 
 /* Writes the name of an end. */
@@ -207,11 +217,12 @@ int contacts_write(const struct contact_state *state, const struct bed *bed, con
     int status = contact_path(state->options->flows, bed->frame, path);
     if (!status) status = output_open(&output, path);
     if (status) return status;
-    fputs("i,j,W/K,W\n", output.file);
+    fputs("i,j,W/K,W,error_W\n", output.file);
     for (uint32_t k = 0; k < state->n; ++k) {
         write_end(output.file, bed, walls, state->first[k]);
         write_end(output.file, bed, walls, state->second[k]);
-        fprintf(output.file, "%.9g,%.9g\n", state->conductance[k] / state->per_watt, state->flow[k]);
+        fprintf(output.file, "%.9g,%.9g,%.3g\n", state->conductance[k] / state->per_watt, state->flow[k],
+                state->error[k]);
     }
     return output_close(&output, output_flush(&output));
 }
@@ -227,6 +238,7 @@ void contacts_report(const struct contact_state *state, const struct bed *bed, c
         report_value(report, "gas_conductivity", state->options->gas_value, 6);
     if (state->n > 0) report_value(report, "conductance_mean_W_K", conductance / state->per_watt / state->n, 6);
     if (state->n > 0) report_value(report, "contact_flow_mean_W", conducted / state->n, 6);
+    if (state->n > 0) report_value(report, "error_of_flows", contacts_error(state), 2);
     double square = 0, sum = 0;
     for (uint32_t i = 0; i < bed->n; ++i)
         square += state->conducted[i] * state->conducted[i], sum += state->conducted[i];

@@ -38,7 +38,7 @@ enum { CONTACT_FILES_MAX = 8 };
          TO_NUMBER(request, contacts.jump, 0, 1)},                                                                     \
     {                                                                                                                  \
         0, "contact-flows", "OUT",                                                                                     \
-            "write what each contact conducts: .csv with i,j,W/K,W; - for standard output [none]",                     \
+            "write what each contact conducts: .csv with i,j,W/K,W,error_W; - for standard output [none]",             \
             TO_TEXT(request, contacts.flows)                                                                           \
     }
 
@@ -70,7 +70,7 @@ struct contact_state {
     uint32_t n, listed;                    /* all contacts; those of files, which come first */
     uint32_t *first, *second;              /* [n] as in fibrad_heat_sources */
     double *conductance;                   /* [n] in the unit of the library */
-    double *flow;                          /* [n] [W] */
+    double *flow, *error;                  /* [n] [W] */
     double *conducted;                     /* [spheres] [W] */
     double *gas;                           /* [n - listed] conductivities [W/(m K)] */
     double *solid;                         /* [spheres] conductivities [W/(m K)]; NULL: not needed */
@@ -111,6 +111,9 @@ void contacts_warn(struct warned *warned, const struct table_excess excess[2]);
 /* Points a result to the arrays of contacts, and scales them to watts. */
 void contacts_result(struct contact_state *state, fibrad_heat_result *result);
 void contacts_scale(struct contact_state *state, uint32_t spheres, uint32_t walls);
+
+/* The root mean square error of what contacts conduct, over its root mean square. */
+double contacts_error(const struct contact_state *state);
 
 /* Writes --contact-flows of a frame. Status 0, STATUS_FILE, STATUS_USAGE or STATUS_MEMORY. */
 int contacts_write(const struct contact_state *state, const struct bed *bed, const struct walls *walls);

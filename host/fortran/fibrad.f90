@@ -201,7 +201,7 @@ module fibrad
             centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr
         real(c_double) :: gas_power = 0, gas_error = 0
         type(c_ptr) :: convected = c_null_ptr, wall_convected = c_null_ptr, conducted = c_null_ptr, &
-            wall_conducted = c_null_ptr, contact_flow = c_null_ptr
+            wall_conducted = c_null_ptr, contact_flow = c_null_ptr, contact_error = c_null_ptr
     end type fibrad_heat_result
 
     type, bind(C) :: fibrad_light

@@ -252,6 +252,7 @@ struct heat_figures {
     double coldest, hottest, temperature_mean; /* [K] */
     double temperature_error;                  /* root mean square error [K] */
     double emission_error;                     /* root mean square error of sigma T^4 over its root mean square */
+    double flow_error; /* the same of what contacts conduct, if spheres conduct inside; else 0 */
     /* of spheres that conduct */
     double surface_min, surface_max; /* [K] least and largest temperature of all surfaces */
     double surface_span;             /* [K] largest difference on the surface of a sphere */

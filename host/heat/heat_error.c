@@ -37,9 +37,12 @@ static fibrad_heat_config fill_config(const struct heat *h, bool refined, bool i
         areas += r[i] * r[i];
         sum += r[i] * r[i] * h->emissivity[i];
     }
+    const bool spots = h->conductivity && h->touching.n > 0; /* flows need them, and know no number for an error */
     const bool bright = sum <= BRIGHT * areas && config.patches <= PATCHES_BRIGHT;
     if (!config.directions)
-        config.directions = refined ? directions_to_begin(h->error) : bright ? DIRECTIONS_BRIGHT : DIRECTIONS_DARK;
+        config.directions = refined && !spots ? directions_to_begin(h->error)
+                            : bright          ? DIRECTIONS_BRIGHT
+                                              : DIRECTIONS_DARK;
     if (!config.points) config.points = POINTS;
     if (!config.wall_rays && insulated)
         config.wall_rays = RAYS_INSULATED * (config.patches ? config.patches : FIBRAD_HEAT_PATCHES_DEFAULT);
@@ -54,6 +57,7 @@ struct excess {
     double beams, patches; /* of the powers of spheres: the part due to beams and the part due to patches */
     double walls;          /* heat_figures.wall_error */
     double emission;       /* heat_figures.emission_error */
+    double flows;          /* heat_figures.flow_error */
 };
 
 /* The error of powers is relative to their root mean square, but at least to 1e-3 of what spheres emit: powers that
@@ -64,12 +68,16 @@ static struct excess compare_errors(const struct heat *h) {
     return (struct excess){.beams = allowed > 0 ? h->result.error_beams / allowed : 0,
                            .patches = allowed > 0 ? h->result.error_patches / allowed : 0,
                            .walls = f->wall_error / h->error,
-                           .emission = f->emission_error / h->error};
+                           .emission = f->emission_error / h->error,
+                           .flows = f->flow_error / h->error};
 }
 
 static double worst_of(const struct excess *over) {
-    return fmax(hypot(over->beams, over->patches), fmax(over->walls, over->emission));
+    return fmax(fmax(hypot(over->beams, over->patches), over->flows), fmax(over->walls, over->emission));
 }
+
+/* What directions do for flows through contacts: at most as much as this many times as many. */
+#define BEAMS_FOR_FLOWS 2.0
 
 #define HELPED       0.6  /* a change helps if at most this part of the error is left */
 #define PATCHES_MOST 0.92 /* most of the allowed error that patches may have; else beams would have to be exact */
@@ -121,8 +129,10 @@ static fibrad_heat_config refine(fibrad_heat_config config, const struct excess 
             add_patches(&config, over);
         else
             add_beams(&config, over->emission, most);
-    } else if (over->walls > HELPED * last->walls) {
+    } else if (over->walls > fmax(1, HELPED * last->walls)) {
         add_beams(&config, over->walls, most);
+    } else if (over->flows > 1 && over->flows <= HELPED * last->flows) {
+        add_beams(&config, fmin(over->flows, BEAMS_FOR_FLOWS), most);
     }
     return config;
 }
@@ -170,7 +180,7 @@ static void foresee(const struct heat *h, struct rounds *rounds) {
 /* Solves again with finer configurations until the errors are small enough or the configuration cannot be finer. */
 static int improve(struct heat *h) {
     struct rounds rounds = {
-        compare_errors(h), {INFINITY, INFINITY, INFINITY, INFINITY}, progress_clock() - h->seconds, 0};
+        compare_errors(h), {INFINITY, INFINITY, INFINITY, INFINITY, INFINITY}, progress_clock() - h->seconds, 0};
     while (worst_of(&rounds.over) > 1) {
         const fibrad_heat_config before = h->used, next = refine(before, &rounds.over, &rounds.last, GROWTH);
         if (next.directions == before.directions && next.patches == before.patches &&

@@ -59,6 +59,7 @@ void heat_find_figures(struct heat *h) {
     f->balance_of_emission = throughput > 0 ? balance / throughput : 0;
     f->error = hypot(result->error_patches, result->error_beams);
     f->wall_error = worst_wall(h);
+    f->flow_error = h->conductivity ? contacts_error(&h->touching) : 0;
 }
 
 /* Figures of surfaces and centres of spheres that conduct. */
@@ -169,6 +170,6 @@ void heat_report(struct heat *h) {
     report_value(report, "error_rms_W", f->error, 2);
     if (h->error > 0)
         report_wanted(report, h->options.name, h->error, h->error, h->error_reached,
-                      "the powers of spheres, of a wall or of the T^4 that were found");
+                      "the powers of spheres, of a wall, of the T^4 that were found or of flows through contacts");
     report_end(report);
 }

@@ -57,7 +57,7 @@ static int make_places(fibrad_bed *bed, fibrad_heat_sources *sources) {
     bed->places = NULL;
     if (sources->contacts == 0 || !sources->conductivity || sources->storage || sources->contact_places)
         return FIBRAD_OK;
-    bed->places = malloc((4 * (size_t)sources->contacts + fibrad_heat_patches(bed->heat)) * sizeof *bed->places);
+    bed->places = malloc((5 * (size_t)sources->contacts + fibrad_heat_patches(bed->heat)) * sizeof *bed->places);
     sources->contact_places = bed->places;
     return bed->places ? FIBRAD_OK : FIBRAD_E_MEMORY;
 }

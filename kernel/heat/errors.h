@@ -60,6 +60,9 @@ void fibrad_heat_mean_errors(const fibrad_heat *heat, const fibrad_heat_errors *
 double fibrad_heat_temperature_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t body,
                                      double temperature);
 
+/* The estimated error of what a contact conducts. */
+double fibrad_heat_flow_error(const fibrad_heat *heat, uint32_t contact);
+
 /* The estimated error of the emission of the hottest or coldest place of a sphere. value, patch: emissions, minus the
  * mean of the surface, of this place and of the patch that is hottest or coldest. open: the place does not face a
  * neighbour, so patches tell its light. */

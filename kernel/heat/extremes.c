@@ -3,6 +3,7 @@
  * Near a neighbour temperatures differ over lengths much shorter than a patch. So places that face a neighbour are
  * looked at in rings, together with the neighbour (rings/rings.h). Elsewhere the rings are about the hottest or coldest
  * patch, and all light is that of patches. */
+#include "base/linear.h"
 #include "base/vector.h"
 #include "heat/solution.h"
 #include "patches/subdivision.h"
@@ -19,6 +20,7 @@
 #define POINTS        4u   /* of an own patch, whose rings are looked up */
 #define MIDDLE_COSINE .8   /* the middle of an open place is looked for among patches of a larger cosine to it */
 #define TRIED         3u   /* hottest places that are looked at in rings, and coldest: patches tell them roughly */
+#define PATCH_COSINE  .6   /* more than the cosine to an axis differs within a patch of a sphere */
 #define APART         1e-6 /* least gap that is used, over the sum of radii: spheres may overlap */
 
 /* A place on a sphere. */
@@ -54,6 +56,18 @@ static void normal_on_patch(const fibrad_heat *heat, uint32_t b, uint32_t patch,
                            normal);
 }
 
+double fibrad_heat_within_cap(const fibrad_heat *heat, uint32_t b, uint32_t a, const double axis[3], double cosine) {
+    const uint32_t patch = a - heat->first[b], points = patch < heat->config.patches ? POINTS : 1;
+    double sum = 0;
+    if (points > 1 && fibrad_dot(heat->normal + 3 * POINTS * patch, axis) < cosine - PATCH_COSINE) return 0;
+    for (uint32_t k = 0; k < points; k++) {
+        double fine[3];
+        if (points == 1) normal_on_patch(heat, b, patch, .5, .5, fine);
+        sum += fibrad_max(0, fibrad_dot(points == 1 ? fine : heat->normal + 3 * (POINTS * patch + k), axis) - cosine);
+    }
+    return sum / points;
+}
+
 /* Finds the places of a sphere that face neighbours, and which own patches are near them. Returns how many. */
 static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ranking best[2], bool *near) {
     uint32_t found = 0;
@@ -86,37 +100,61 @@ static uint32_t search_neighbours(const fibrad_heat *heat, uint32_t b, struct ra
     return found;
 }
 
-/* How much the irradiation of a patch differs from that of its four, per area. 0: fine patches, which have no four. */
-static double detail_of(const fibrad_heat *heat, uint32_t b, uint32_t a) {
-    const uint32_t first = heat->first[b], begin = a - (a - first) % FIBRAD_HEAT_FOUR;
-    double sum = 0, area = 0;
-    if (a >= first + heat->config.patches) return 0;
-    for (uint32_t k = begin; k < begin + FIBRAD_HEAT_FOUR; k++)
-        sum += heat->solution.area[k] * heat->solution.radiosity[k] + heat->solution.net[k],
-            area += heat->solution.area[k];
-    return heat->solution.radiosity[a] + heat->solution.net[a] / heat->solution.area[a] - sum / area;
+/* Irradiation that is smooth about an axis: a sum of Legendre polynomials of the cosine up to degree SMOOTH - 1. */
+#define SMOOTH 4u
+static void legendre(double x, double value[SMOOTH]) {
+    value[0] = 1, value[1] = x;
+    for (uint32_t l = 2; l < SMOOTH; l++) value[l] = ((2 * l - 1) * x * value[l - 1] - (l - 1) * value[l - 2]) / l;
 }
 
-/* Sums of what patches of a sphere have in rings about an axis: areas, and areas times irradiation, J and light. The
- * irradiation is that of each patch plus `sharp` times its difference from its four. */
-static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, double sharp,
+/* Their means over a patch of sphere b. Around a point the mean over a quarter of an own patch is less by l (l + 1)/2
+ * times its share of the sphere. */
+static void smooth_on_patch(const fibrad_heat *heat, uint32_t b, uint32_t patch, const double axis[3],
+                            double mean[SMOOTH]) {
+    const uint32_t cube = heat->config.patches, points = patch < cube ? POINTS : 1;
+    fibrad_zero(mean, SMOOTH * sizeof *mean);
+    for (uint32_t k = 0; k < points; k++) {
+        double fine[3], value[SMOOTH];
+        if (points == 1) normal_on_patch(heat, b, patch, .5, .5, fine);
+        legendre(fibrad_dot(points == 1 ? fine : heat->normal + 3 * (POINTS * patch + k), axis), value);
+        for (uint32_t l = 0; l < SMOOTH; l++)
+            mean[l] += value[l] / points * (points == 1 ? 1 : 1 - l * (l + 1) / (2. * POINTS * cube));
+    }
+}
+
+/* Sums of what patches of a sphere have in rings about an axis: areas, and areas times irradiation, J and light.
+ * smooth: not NULL: set to the smooth irradiation by degree that is nearest to that of the patches, which is taken off.
+ */
+static void sum_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, double *smooth,
                       fibrad_heat_ringed *sums) {
     const uint32_t first = heat->first[b], cube = heat->config.patches;
+    double row[SMOOTH][SMOOTH + 1] = {{0}}, in_ring[FIBRAD_RINGS][SMOOTH] = {{0}}, mean[SMOOTH];
     fibrad_zero(sums, sizeof *sums);
     for (uint32_t a = first; a < heat->first[b + 1]; a++) {
         const uint32_t points = a < first + cube ? POINTS : 1;
-        const double area = heat->solution.area[a] / points, sent = heat->solution.radiosity[a];
-        const double more = sharp > 0 && area > 0 ? sharp * detail_of(heat, b, a) : 0;
+        const double area = heat->solution.area[a] / points, sent = heat->solution.radiosity[a],
+                     arrives = area * sent + heat->solution.net[a] / points;
+        if (smooth != NULL) smooth_on_patch(heat, b, a - first, axis, mean);
+        for (uint32_t l = 0; l < SMOOTH && smooth != NULL; l++) {
+            for (uint32_t m = 0; m < SMOOTH; m++) row[l][m] += points * area * mean[l] * mean[m];
+            row[l][SMOOTH] += points * arrives * mean[l];
+        }
         for (uint32_t k = 0; k < points && area > 0; k++) {
             double fine[3];
             if (points == 1) normal_on_patch(heat, b, a - first, .5, .5, fine);
             const double *normal = points == 1 ? fine : heat->normal + 3 * (POINTS * (a - first) + k);
             const uint32_t ring = fibrad_rings_at(heat->rings, sign * fibrad_dot(normal, axis));
             sums->area[ring] += area, sums->sent[ring] += area * sent;
-            sums->arriving[ring] += area * (sent + more) + heat->solution.net[a] / points;
+            sums->arriving[ring] += arrives;
             sums->absorbed[ring] += fibrad_heat_entering(heat, a) / points;
+            for (uint32_t l = 0; l < SMOOTH && smooth != NULL; l++) in_ring[ring][l] += area * mean[l];
         }
     }
+    if (smooth == NULL) return;
+    fibrad_solve_linear(SMOOTH, SMOOTH + 1, row[0]);
+    for (uint32_t l = 0; l < SMOOTH; l++) smooth[l] = row[l][SMOOTH];
+    for (uint32_t k = 0; k < FIBRAD_RINGS; k++)
+        for (uint32_t l = 0; l < SMOOTH; l++) sums->arriving[k] -= smooth[l] * in_ring[k][l];
 }
 
 /* Turns sums into means. Rings without patches, which are near the axis, have what the next ring has. */
@@ -128,10 +166,15 @@ static void average_rings(fibrad_heat_ringed *sums) {
     }
 }
 
-void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, double sharp,
+void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double axis[3], double sign, bool smooth,
                                fibrad_heat_ringed *mean) {
-    sum_rings(heat, b, axis, sign, sharp, mean);
+    double part[SMOOTH], value[SMOOTH];
+    sum_rings(heat, b, axis, sign, smooth ? part : NULL, mean);
     average_rings(mean);
+    for (uint32_t k = 0; k < FIBRAD_RINGS && smooth; k++) {
+        legendre(heat->rings->cosine[k], value);
+        for (uint32_t l = 0; l < SMOOTH; l++) mean->arriving[k] += part[l] * value[l];
+    }
 }
 
 static void put_in_rings(const fibrad_heat *heat, uint32_t b, const fibrad_heat_ringed *mean, fibrad_ringed *sphere) {
@@ -167,7 +210,7 @@ static double emission_in_rings(const fibrad_heat *heat, uint32_t b, const struc
     const uint32_t count = place->other == FIBRAD_NONE ? 1 : 2;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t body = i == 0 ? b : place->other;
-        fibrad_heat_look_in_rings(heat, body, place->axis, i == 0 ? 1 : -1, 0, &mean[i]);
+        fibrad_heat_look_in_rings(heat, body, place->axis, i == 0 ? 1 : -1, false, &mean[i]);
         put_in_rings(heat, body, &mean[i], &sphere[i]);
     }
     if (count > 1) {

@@ -151,6 +151,7 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
         put_wanted(result->contact_flow, k,
                    c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
                        (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
+    for (uint32_t k = 0; k < c->count; k++) put_wanted(result->contact_error, k, fibrad_heat_flow_error(heat, k));
     result->surroundings_power = heat->solution.power[heat->bodies - 1];
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];

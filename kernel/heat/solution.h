@@ -126,13 +126,17 @@ void fibrad_heat_find_spans(fibrad_heat *heat);
 void fibrad_heat_make_rings(fibrad_heat *heat);
 
 /* What a sphere has in rings about an axis: areas, and means of irradiation, J and the power that enters. A ring
- * without patches, which is near the axis, has the means of the next ring. sign: -1: the axis is turned over. sharp:
- * what differs between the patches of a four counts this much more. */
+ * without patches, which is near the axis, has the means of the next ring. sign: -1: the axis is turned over. smooth:
+ * the smooth part of the irradiation is that of patches without size. */
 typedef struct fibrad_heat_ringed {
     double area[FIBRAD_RINGS], arriving[FIBRAD_RINGS], sent[FIBRAD_RINGS], absorbed[FIBRAD_RINGS];
 } fibrad_heat_ringed;
-void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t sphere, const double axis[3], double sign,
-                               double sharp, fibrad_heat_ringed *mean);
+void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t sphere, const double axis[3], double sign, bool smooth,
+                               fibrad_heat_ringed *mean);
+
+/* The mean over patch `a` of a sphere of what the cosine to an axis exceeds `cosine` by; 0 where it does not. */
+double fibrad_heat_within_cap(const fibrad_heat *heat, uint32_t sphere, uint32_t a, const double axis[3],
+                              double cosine);
 
 /* Finds the hottest and the coldest places of the spheres from `begin` to `end` - 1 in heat->sequence. The solution has
  * ended, and no direction was set since. */

@@ -459,10 +459,10 @@ static void begin_spots(fibrad_heat *heat, const fibrad_heat_sources *s) {
     double *at = s->contact_places;
     heat->spots = (fibrad_heat_spots){0};
     if (n == 0 || at == NULL || !heat->sources.conducts) return;
-    heat->spots =
-        (fibrad_heat_spots){s->conductance, at, at + n, at + 2 * (size_t)n, at + 3 * (size_t)n, at + 4 * (size_t)n};
+    heat->spots = (fibrad_heat_spots){
+        s->conductance, at, at + n, at + 2 * (size_t)n, at + 3 * (size_t)n, at + 4 * (size_t)n, at + 5 * (size_t)n};
     fibrad_copy(at, s->conductance, n * sizeof *at);
-    fibrad_zero(at + n, (3 * (size_t)n + heat->patches) * sizeof *at);
+    fibrad_zero(at + n, (4 * (size_t)n + heat->patches) * sizeof *at);
     heat->contacts.conductance = at;
     heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
     fibrad_heat_make_rings(heat);

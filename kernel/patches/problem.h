@@ -203,6 +203,7 @@ typedef struct fibrad_heat_spots {
     const double *given;          /* [contacts], conductances between half-spaces */
     double *conductance;          /* [contacts], between the means of both surfaces */
     double *offset, *flow, *next; /* [contacts], flows from first to second: at equal means; so far; found last */
+    double *doubt;                /* [contacts], square of the error of a flow from radiation about its spots */
     double *entering;             /* [patches], power that enters at flow; NULL: contacts act on means of surfaces */
 } fibrad_heat_spots;
 

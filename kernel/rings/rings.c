@@ -130,6 +130,11 @@ static double sum_of_factors(const struct ring_place *from, double other, double
     return factor_of_point(far / other, (z * from->cosine - from->across * from->sine) / far);
 }
 
+double fibrad_rings_sees(double radius, double other, double distance, double cosine) {
+    const double sine = fibrad_sqrt(1 - cosine * cosine);
+    return sum_of_factors(&(struct ring_place){radius * sine, radius * cosine, sine, cosine}, other, distance);
+}
+
 /* Scales what the rings of sphere i see, so that the sums of factors are exact. */
 static void scale_factors(const fibrad_rings *rings, const double radius[2], double distance, int i,
                           fibrad_rings_work *work) {
@@ -231,15 +236,23 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
     return fibrad_sqrt(1 - low) - fibrad_sqrt(1 - high);
 }
 
+void fibrad_rings_warmth(const fibrad_rings *rings, double size, double warmth[RINGS]) {
+    fibrad_zero(warmth, RINGS * sizeof *warmth);
+    for (uint32_t m = 0; m < RINGS; m++) {
+        const double flux = share_of_spot(rings, size, m) / rings->share[m];
+        for (uint32_t k = 0; k < RINGS && flux > 0; k++) warmth[k] += rings->spread[k][m] * flux;
+    }
+}
+
 /* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.
  */
-double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness, double biot,
-                         fibrad_rings_work *work, double response[RINGS]) {
+double fibrad_rings_spot(const fibrad_rings *rings, double size, const double emissivity[RINGS], double unevenness,
+                         double biot, fibrad_rings_work *work, double response[RINGS]) {
     double flux[RINGS], less = 0;
     film_spread(rings, biot, 0, work);
     for (uint32_t k = 0; k < RINGS; k++) {
         double *row = work->row[k];
-        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * work->spread[0][k][m] + (k == m);
+        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity[k] * unevenness * work->spread[0][k][m] + (k == m);
         row[RINGS] = flux[k] = share_of_spot(rings, size, k) / rings->share[k];
     }
     fibrad_solve_linear(RINGS, 2 * RINGS + 1, work->row[0]);

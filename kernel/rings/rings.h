@@ -47,14 +47,21 @@ typedef struct fibrad_rings_work {
  * follows from the middles of rings. */
 void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double distance, fibrad_rings_work *work);
 
+/* What a unit of power over area that enters through a spot makes of the emissions of rings, if 1/(2 K) is 1 and
+ * nothing is radiated. */
+void fibrad_rings_warmth(const fibrad_rings *rings, double size, double warmth[FIBRAD_RINGS]);
+
+/* The view factor to another sphere from a place of a sphere, `cosine` to the axis. */
+double fibrad_rings_sees(double radius, double other, double distance, double cosine);
+
 /* A spot of one temperature around the axis through which heat enters a sphere.
  *   Input    size: its radius over that of the sphere
  *            biot: as in fibrad_ringed
  *   Output   response: mean emission of the spot, minus that of the sphere, for one unit of absorbed power over area
  * that is spread in this ring alone, over the share of the ring Result   by how much less the spot emits, for a unit of
  * power over the sphere's area that enters through it, than if the sphere did not radiate and had no film */
-double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness, double biot,
-                         fibrad_rings_work *work, double response[FIBRAD_RINGS]);
+double fibrad_rings_spot(const fibrad_rings *rings, double size, const double emissivity[FIBRAD_RINGS],
+                         double unevenness, double biot, fibrad_rings_work *work, double response[FIBRAD_RINGS]);
 
 /* The emission on the axis minus the mean emission of sphere[0]. count: 1, or 2 if the spheres face each other. */
 double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count,

@@ -145,7 +145,7 @@ class HeatResult(Structure):
                 ("surface_error", POINTER(c_double)), ("centre_error", POINTER(c_double)), ("gas_power", c_double),
                 ("gas_error", c_double), ("convected", POINTER(c_double)), ("wall_convected", POINTER(c_double)),
                 ("conducted", POINTER(c_double)), ("wall_conducted", POINTER(c_double)),
-                ("contact_flow", POINTER(c_double))]
+                ("contact_flow", POINTER(c_double)), ("contact_error", POINTER(c_double))]
 
 
 class Light(Structure):
