@@ -7,7 +7,8 @@
  * compared with twice its estimate, twice the noise of the paths is subtracted first.
  *
  * The arguments are `quick`, or [scenes [paths from each sphere [first scene [error]]]]. Figures of docs/trust.md are
- * by bench_tolerance 14 200000. The environment may have FIBRAD, the program [build/fibrad], and TRUTH, a folder that keeps the powers by paths [none]. */
+ * by bench_tolerance 14 200000. The environment may have FIBRAD, the program [build/fibrad], and TRUTH, a folder that
+ * keeps the powers by paths [none]. */
 #define _POSIX_C_SOURCE 200809L
 #include "room.h"
 
