@@ -236,8 +236,10 @@ demo: deps
 	@echo "The matrix of view factors: $(BUILD)/demo/F.mtx"
 	@echo "The picture of the bed:     $(BUILD)/demo/bed.png"
 
-## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems
+## dist: build/dist/fibrad.c and fibrad.h, the whole kernel in two files for other build systems; all sources of the last commit as a .tar.gz
+VERSION = $(shell sed -n 's/^\#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h)
 dist: $(BUILD)/dist/fibrad.c
+	git archive --prefix=fibrad-$(VERSION)/ -o $(BUILD)/dist/fibrad-$(VERSION).tar.gz HEAD
 
 $(BUILD)/dist/fibrad.c: $(BUILD)/tables.c $(KERNEL) $(LANED) $(wildcard kernel/*.h kernel/*/*.h kernel/*/*/*.h) kernel/join.sh
 	kernel/join.sh $(abspath $<) $(abspath $(@D)) $(KERNEL) $(LANED)
@@ -248,7 +250,7 @@ WITH_MPI = BUILD=$(BUILD) CC="$(CC)" MAKE="$(MAKE)" MPICC="$(MPICC)" MPIRUN="$(M
 ## test: install missing packages, build and run all tests but those of nightly
 test: deps
 	@echo "Building the tests"
-	@$(MAKE) -s --no-print-directory programs all man dist
+	@$(MAKE) -s --no-print-directory programs all man $(BUILD)/dist/fibrad.c
 	@$(WITH_MPI) tests/run.sh $(filter-out $(NIGHTLY) $(NIGHTLY:%.c=$(BUILD)/%),$(COUPLE_SCRIPTS) $(SCRIPTS) $(TEST_PROGRAMS))
 
 ## test-ROOM: build and run the tests of one room, in seconds: test-heat, test-mesh, test-read ...; tests/rooms.txt has all
@@ -511,8 +513,7 @@ install: install-lib $(BUILD)/fibrad man
 PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
 
 # installs files for pkg-config
-install_pc = version=$$(sed -n 's/^\#define FIBRAD_VERSION "\(.*\)"/\1/p' kernel/fibrad.h); for pc in $(1:.in=); do \
-	    sed -e 's|@PREFIX@|$(PREFIX)|' -e "s|@VERSION@|$$version|" $$pc.in \
+install_pc = for pc in $(1:.in=); do sed -e 's|@PREFIX@|$(PREFIX)|' -e 's|@VERSION@|$(VERSION)|' $$pc.in \
 	        > $(DESTDIR)$(PREFIX)/lib/pkgconfig/$${pc\#\#*/} || exit 1; done
 
 ## install-lib: install without the program

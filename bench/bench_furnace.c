@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "papers/furnace/furnace_cases.h"
-#include "papers/furnace/furnace_run.h"
+#include "papers/furnace/furnace.h"
+#include "cli/message.h"
 
 enum { CELLS = 20 * 20 * 40 };
 

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/spelling.h"
 #include "command/commands.h"

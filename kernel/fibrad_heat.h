@@ -127,6 +127,10 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  * 0 that is in contact has a temperature, and may give off a power. `conductance` is in units of sigma K^3 L^2. If
  * lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K is 1e6.
  *
+ * A film exchanges heat with gas of a given temperature: film times the difference of the temperatures of gas and
+ * surface. It is the heat transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact
+ * does: also on spheres of emissivity 0. On a sphere with a finite conductivity it acts point by point.
+ *
  * With `contact_places` the contacts of a sphere with a finite conductivity act where the line to the other centre, or
  * the normal of the plane or cylinder, leaves the sphere. Contacts with meshes act on the mean of the sphere's
  * surface.
@@ -160,10 +164,13 @@ typedef struct fibrad_heat_sources {
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
     const double *absorbed;     /* sigma K^4 L^2, [fibrad_heat_patches], light that heats; NULL: none; fibrad_light.h */
-    const uint32_t *contact_first;  /* [contacts], a sphere, or spheres + a wall; NULL: no contacts */
-    const uint32_t *contact_second; /* [contacts], the other end */
-    const double *conductance;      /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
-    uint32_t contacts;              /* number of contacts */
+    const uint32_t *contact_first;      /* [contacts], a sphere, or spheres + a wall; NULL: no contacts */
+    const uint32_t *contact_second;     /* [contacts], the other end */
+    const double *conductance;          /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
+    uint32_t contacts;                  /* number of contacts */
+    const double *film;                 /* sigma K^3 L^2, [spheres], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
+    const double *gas;                  /* K, [spheres], temperature of the gas at a film; NULL without `film` */
+    const double *wall_film, *wall_gas; /* the same, [walls] */
     double *contact_places; /* [4 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
 } fibrad_heat_sources;
 
@@ -210,10 +217,10 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
- * A net power is above 0 where a surface gains heat, by radiation and through contacts. A given power has the other
- * sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they were found or
- * given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact; or only a temperature below
- * zero would give the power.
+ * A net power is above 0 where a surface gains heat, by radiation, through contacts and through its film. A given power
+ * has the other sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they
+ * were found or given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact; or only a
+ * temperature below zero would give the power.
  *
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean
@@ -241,6 +248,10 @@ typedef struct fibrad_heat_result {
     double *centre_temperature;     /* K, [spheres], out; may be NULL */
     double *surface_error;          /* K, [spheres], out: estimated error of least and largest; may be NULL */
     double *centre_error;           /* K, [spheres], out: estimated error of centre_temperature; may be NULL */
+    double gas_power;               /* sigma K^4 L^2, out: net power of the gas, through films */
+    double gas_error;               /* sigma K^4 L^2, out: estimated error of gas_power */
+    double *convected;              /* sigma K^4 L^2, [spheres], out: part of power, through films; may be NULL */
+    double *wall_convected;         /* sigma K^4 L^2, [walls], out: part of wall_power, through films; may be NULL */
     double *conducted;              /* sigma K^4 L^2, [spheres], out: part of power, through contacts; may be NULL */
     double *wall_conducted;         /* sigma K^4 L^2, [walls], out: part of wall_power, through contacts; may be NULL */
     double *contact_flow;           /* sigma K^4 L^2, [contacts], out: from the first end to the second; may be NULL */

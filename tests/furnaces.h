@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/elementary.h"
-#include "papers/furnace/furnace_cases.h"
-#include "papers/furnace/furnace_run.h"
+#include "papers/furnace/furnace.h"
 #include "suite.h"
 
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN

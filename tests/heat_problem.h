@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "row/beam.h"
 #include "scene/walls.h"
-#include "patches/wall_patch.h"
+#include "patches/subdivision.h"
 #include "heat_runs.h"
 #include "sample/direction.h"
 #include "sample/tables.h"

@@ -21,11 +21,9 @@ static inline void add_rows(fibrad_rows *rows, uint32_t n, const uint64_t *start
         const uint64_t begin = all.start[i];
         double sum = 0;
         for (uint64_t k = begin; k < all.start[i + 1]; k++) sum += f[k];
-        const fibrad_row row = {.sphere = i,
-                                .col = (uint32_t *)(uintptr_t)(all.col + begin),
-                                .f = (double *)(uintptr_t)(all.f + begin),
-                                .length = (uint32_t)(all.start[i + 1] - begin),
-                                .escaped = open ? 1 - sum : 0};
+        fibrad_row row = {.sphere = i, .col = (uint32_t *)(uintptr_t)(all.col + begin)};
+        row.f = (double *)(uintptr_t)(all.f + begin), row.length = (uint32_t)(all.start[i + 1] - begin);
+        row.escaped = open ? 1 - sum : 0;
         assert_ok(fibrad_rows_add(rows, &row, 0));
     }
 }

@@ -20,13 +20,9 @@ struct mesh {
 static inline struct mesh *mesh_new(void) {
     struct mesh *mesh = calloc(1, sizeof *mesh);
     ck_assert_ptr_nonnull(mesh);
-    mesh->triangles = (struct fibrad_triangles){.x = &mesh->at[0][0],
-                                                .y = &mesh->at[0][1],
-                                                .z = &mesh->at[0][2],
-                                                .stride = 3,
-                                                .corner = &mesh->corner[0][0],
-                                                .front = mesh->front,
-                                                .back = mesh->back};
+    mesh->triangles = (struct fibrad_triangles){.x = &mesh->at[0][0], .y = &mesh->at[0][1], .z = &mesh->at[0][2]};
+    mesh->triangles.stride = 3, mesh->triangles.corner = &mesh->corner[0][0], mesh->triangles.front = mesh->front;
+    mesh->triangles.back = mesh->back;
     for (int b = 0; b < FIBRAD_WALLS_MAX; b++) mesh->wall[b].kind = FIBRAD_WALL_MESH;
     return mesh;
 }

@@ -125,20 +125,12 @@ static inline struct named_row row_by(const struct part *p, const fibrad_scene *
     struct named_row out = {.row = row_of(p->n), .by_id = calloc(p->ids, sizeof(double))};
     OWNED double *e = emissivities_of(p);
     OWNED_WORK work = work_growing();
-    const fibrad_beam_rule beam = {.directions = method == 2 ? 34 : 55,
-                                   .points = method == 0   ? 0
-                                             : method == 1 ? 64
-                                                           : 256,
-                                   .cutoff = cutoff,
-                                   .turn = method == 2 ? 99 : 0};
+    fibrad_beam_rule beam = {.directions = method == 2 ? 34 : 55, .points = method == 0 ? 0 : method == 1 ? 64 : 256};
+    beam.cutoff = cutoff, beam.turn = method == 2 ? 99 : 0;
     const fibrad_cast_rule cast = {.rays = 600, .seed = 4, .cutoff = cutoff};
-    const fibrad_exchange_rule exchange = {.emissivity = e,
-                                           .wall_emissivity = wall_emissivity,
-                                           .directions = method == 5 ? 145 : 0,
-                                           .paths = 60,
-                                           .seed = method == 6 ? 12347 : 0,
-                                           .cutoff = cutoff,
-                                           .tolerance = method == 7 ? .03 : 0};
+    fibrad_exchange_rule exchange = {.emissivity = e, .wall_emissivity = wall_emissivity};
+    exchange.directions = method == 5 ? 145 : 0, exchange.paths = 60, exchange.seed = method == 6 ? 12347 : 0;
+    exchange.cutoff = cutoff, exchange.tolerance = method == 7 ? .03 : 0;
     const int status = method < 3    ? fibrad_beam_row(scene, &work, i, &beam, &out.row)
                        : method == 3 ? fibrad_cast_row(scene, &work, i, &cast, &out.row, NULL)
                                      : fibrad_exchange_row(scene, &work, i, &exchange, &out.row, &out.rays);
@@ -199,8 +191,7 @@ struct made {
 
 /* Adds a tube among the spheres, and a high box about them. On periodic axes the box has only a floor and a lid. */
 static inline void make_mesh(struct made *m, const double period[3], fibrad_scene_config *config) {
-    const double wide = period[0] > 0 ? 0 : .5;
-    const double low[3] = {m->low[0] - wide, m->low[1] - wide, m->low[2] - .5};
+    const double wide = period[0] > 0 ? 0 : .5, low[3] = {m->low[0] - wide, m->low[1] - wide, m->low[2] - .5};
     const double high[3] = {m->high[0] + wide, m->high[1] + wide, m->high[2] + 9};
     m->mesh = mesh_new();
     mesh_box(m->mesh, low, high, 0);

@@ -67,10 +67,8 @@ static inline void plain_fill(struct plain_bed *p, bool list) {
 }
 
 static inline struct plain_bed plain_bed_of(const struct bed *bed) {
-    struct plain_bed p = {.bed = bed,
-                          .low = {-INFINITY, -INFINITY, -INFINITY},
-                          .high = {INFINITY, INFINITY, INFINITY},
-                          .round = INFINITY};
+    struct plain_bed p = {.bed = bed, .low = {-INFINITY, -INFINITY, -INFINITY}, .high = {INFINITY, INFINITY, INFINITY}};
+    p.round = INFINITY;
     const double *place[3] = {bed->x, bed->y, bed->z};
     double cell = 0;
     for (uint32_t i = 0; i < bed->n; i++) cell += 2 * bed->r[i] / bed->n;

@@ -23,6 +23,11 @@
 #define POLY     "tests/data/poly2000.dump"
 #define PERIODIC "tests/data/monoper2000.dump"
 
+/* A frame of two spheres in a dump. */
+#define TWO_SPHERES(number, marks, rows)                                                                               \
+    "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
+    "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
+
 static const char *build; /* folder of the program */
 static char folder[200];  /* for the files of a test */
 static char stdout_path[220], stderr_path[220];

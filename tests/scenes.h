@@ -70,6 +70,15 @@ static inline struct bed packing(uint32_t n, double low, double high, double fra
     return bed;
 }
 
+/* Makes `to` a bed 2^k times as large as a bed of as many spheres. */
+static inline void scale_bed(struct bed *to, const struct bed *bed, int k) {
+    for (uint32_t i = 0; i < bed->n; i++) {
+        to->x[i] = ldexp(bed->x[i], k), to->y[i] = ldexp(bed->y[i], k), to->z[i] = ldexp(bed->z[i], k);
+        to->r[i] = ldexp(bed->r[i], k);
+    }
+    for (int axis = 0; axis < 3; axis++) to->period[axis] = ldexp(bed->period[axis], k);
+}
+
 /* A unit cube with a few large spheres, and with n - 6 small spheres at random about them. */
 static inline struct bed strewn(uint32_t n, uint64_t seed) {
     struct bed bed = bed_empty();

@@ -17,15 +17,8 @@ static fibrad_scene *scene_with_back(void *block, size_t size, double emissivity
     static const double at[5][3] = {{-9, -9, 9}, {20, -9, 9}, {-9, 20, 9}, {-9, -9, 12}, {20, -9, 12}};
     static const uint32_t corner[2][3] = {{0, 1, 2}, {0, 4, 3}}, front[2] = {0, FIBRAD_NO_WALL},
                           back[2] = {0, FIBRAD_NO_WALL};
-    const fibrad_triangles two = {.x = &at[0][0],
-                                  .y = &at[0][1],
-                                  .z = &at[0][2],
-                                  .stride = 3,
-                                  .vertices = 5,
-                                  .corner = &corner[0][0],
-                                  .front = front,
-                                  .back = back,
-                                  .n = 2};
+    fibrad_triangles two = {.x = &at[0][0], .y = &at[0][1], .z = &at[0][2], .stride = 3, .vertices = 5};
+    two.corner = &corner[0][0], two.front = front, two.back = back, two.n = 2;
     const fibrad_wall mesh = {.kind = FIBRAD_WALL_MESH};
     const fibrad_scene_config config = {.wall = &mesh, .walls = 1, .triangles = &two};
     double x[CUBE], y[CUBE], z[CUBE], r[CUBE];

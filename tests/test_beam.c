@@ -214,11 +214,7 @@ TEST(scaling_by_powers_of_two_changes_no_bit) {
     OWNED_BED bed = packing(200, .8, 1.2, .5, 5, true), scaled = packing(200, .8, 1.2, .5, 5, true);
     OWNED_ROW row = beam(&bed, 11, (fibrad_beam_rule){.directions = 233, .cutoff = 9}, FIBRAD_ISA_BEST);
     for (int k = -400; k <= 400; k += 100) {
-        for (uint32_t i = 0; i < bed.n; i++) {
-            scaled.x[i] = ldexp(bed.x[i], k), scaled.y[i] = ldexp(bed.y[i], k), scaled.z[i] = ldexp(bed.z[i], k);
-            scaled.r[i] = ldexp(bed.r[i], k);
-        }
-        for (int axis = 0; axis < 3; axis++) scaled.period[axis] = ldexp(bed.period[axis], k);
+        scale_bed(&scaled, &bed, k);
         OWNED_ROW other =
             beam(&scaled, 11, (fibrad_beam_rule){.directions = 233, .cutoff = ldexp(9, k)}, FIBRAD_ISA_BEST);
         ck_assert(same_bits(&row, &other));

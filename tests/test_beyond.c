@@ -27,8 +27,7 @@ static bool clear_by_steps(const fibrad_occupancy *o, const double from[3], cons
         bool inside = true;
         for (int axis = 3; axis-- > 0;) {
             const double size = (o->high[axis] - o->low[axis]) / o->cells[axis];
-            const int64_t cells = o->cells[axis];
-            const int64_t at = (int64_t)floor((from[axis] + t * w[axis] - o->low[axis]) / size);
+            const int64_t cells = o->cells[axis], at = (int64_t)floor((from[axis] + t * w[axis] - o->low[axis]) / size);
             inside = inside && (o->periodic[axis] || (at >= 0 && at < cells));
             if (!o->periodic[axis] && (w[axis] > 0 ? at >= cells : at < 0)) return true; /* gone */
             cell = cell * (uint64_t)cells + (uint64_t)((at % cells + cells) % cells);

@@ -4,10 +4,6 @@
 
 FIXTURE(make_folder, remove_folder)
 
-#define FRAME(number, marks, rows)                                                                                     \
-    "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
-    "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
-
 TEST(tolerance) {
     SUCCEED("factors", POLY, "--error", "0.01");
     ck_assert_double_le(value_of("error_estimate"), .01);
@@ -271,8 +267,8 @@ TEST(targets_and_formats) {
 
 /* Two spheres are seen through periodic faces and in the open, from a CSV file and from standard input. */
 TEST(frames_periods_and_ids) {
-    const char *dump = write_file("two.dump", FRAME("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n")
-                                                  FRAME("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 5\n"));
+    const char *dump = write_file("two.dump", TWO_SPHERES("0", "ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n")
+                                                  TWO_SPHERES("1", "pp ff ff", "1 1 4 4 70\n1 7 4 4 5\n"));
     SUCCEED("factors", dump, "--frame", "0");
     ck_assert_double_eq_tol(value_of("row_sum_min"), 0.00704, 1e-3);
     ck_assert_double_eq(value_of("nonzeros"), 2);

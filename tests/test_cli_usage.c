@@ -3,10 +3,6 @@
 
 FIXTURE(make_folder, remove_folder)
 
-#define FRAME(number, marks, rows)                                                                                     \
-    "ITEM: TIMESTEP\n" number "\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " marks                                    \
-    "\n0 8\n0 8\n0 8\nITEM: ATOMS radius x y z id\n" rows
-
 #define W(n)                                                                                                           \
     { .whole = (n) }
 
@@ -126,7 +122,7 @@ static const struct {
     {{"factors", MONO, "--raw=yes"}, "--raw takes no argument"},
     {{"factors", MONO, "-o", "out.txt"}, "unknown ending; there are .csv, .mtx, .npz, .vtp and .json"},
     {{"factors", MONO, "--plot", "out.pdf"}, "unknown ending; there are .svg and .png"},
-    {{"factors", MONO, "--slice=x=3"}, "--slice is for pictures of a bed at one time, by --plot"},
+    {{"factors", MONO, "--slice=x=3"}, "--slice needs --plot"},
     {{"factors", MONO, "--plot=bed.svg", "--slice=r=3"}, "--slice: 'r=3' is none of x=VALUE, y=VALUE and z=VALUE"},
     {{"factors", MONO, "--plot=bed.svg", "--slice=z=99"}, "--slice: no sphere is at z = 99; spheres are from -0.000"},
     {{"factors", MONO, "--frame", "2:1"}, "--frame: '2:1' is none of K, all, A:B, A:B:STEP, -1"},
@@ -271,8 +267,7 @@ TEST(help_is_true) {
 }
 
 TEST(exact_pair) {
-    const double pi = 3.14159265358979323846;
-    ck_assert_double_eq_tol(pair("1", "1", "0"), 0.5 - 4 / (3 * pi), 1e-15);
+    ck_assert_double_eq_tol(pair("1", "1", "0"), 0.5 - 4 / (3 * M_PI), 1e-15);
     ck_assert_double_eq_tol(pair("1", "1", "1"), 0.0295903122505504314, 1e-16);
     ck_assert_double_eq_tol(pair("1", "1", "30"), 2.442599800579042e-4, 1e-18);
     ck_assert_double_eq_tol(pair("1", "0.3", ".05"), 0.09 * pair("0.3", "1", ".05"), 1e-16);
@@ -319,8 +314,8 @@ static const struct {
      "float\n"
      "LOOKUP_TABLE default\n1 1\n",
      ": sphere", "sphere 0 has the same centre as sphere 1\n"}, /* on no line */
-    {FRAME("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n"), ":6: ", "bounds"},
-    {FRAME("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 5\n"), ":11: ", "line 10"}, /* the same place in the box */
+    {TWO_SPHERES("0", "xy xz yz ff ff ff", "1 1 4 4 70\n1 7 4 4 5\n"), ":6: ", "bounds"},
+    {TWO_SPHERES("0", "ff pp ff", "1 4 0 4 70\n1 4 8 4 5\n"), ":11: ", "line 10"}, /* the same place in the box */
 };
 
 LOOP_TEST(bad_input, sizeof bad_beds / sizeof *bad_beds) {
@@ -397,8 +392,7 @@ TEST(joined_with_many_walls) {
 }
 
 TEST(joined) {
-    const char *zero = write_rank(0), *one = write_rank(1);
-    const char *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
+    const char *zero = write_rank(0), *one = write_rank(1), *csv = in_folder("D.csv"), *mtx = in_folder("D.mtx");
     const char *json = in_folder("D.json");
     SUCCEED("join", one, zero, "--raw", "--positions", "-o", csv, "--json", json);
     ck_assert_double_eq(value_of("spheres"), 3);

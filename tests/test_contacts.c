@@ -54,15 +54,10 @@ static void begin(struct joint *j, struct bed bed, double emissivity) {
     j->sources.conductance = j->conductance;
     j->sources.surroundings = 300;
     j->scene.wall = j->wall;
-    j->result = (fibrad_heat_result){.power = j->q,
-                                     .wall_power = j->wall_q,
-                                     .temperature = j->t,
-                                     .wall_temperature = j->wall_t,
-                                     .power_error = j->q_error,
-                                     .temperature_error = j->t_error,
-                                     .conducted = j->conducted,
-                                     .wall_conducted = j->wall_conducted,
-                                     .contact_flow = j->flow};
+    j->result = (fibrad_heat_result){.power = j->q, .wall_power = j->wall_q, .temperature = j->t};
+    j->result.wall_temperature = j->wall_t, j->result.power_error = j->q_error;
+    j->result.temperature_error = j->t_error, j->result.conducted = j->conducted;
+    j->result.wall_conducted = j->wall_conducted, j->result.contact_flow = j->flow;
 }
 
 /* Adds a wall and returns the number by which contacts call it. */

@@ -75,6 +75,30 @@ TEST(parts_add_up) {
     ck_assert_double_lt(fabs(value_of("balance_of_stored")), 1e-10);
 }
 
+/* Bins have the mean of temperatures and the sum of powers that -o has of the same spheres. */
+TEST(profiles_are_of_what_is_written) {
+    const char *q = in_folder("q.csv"), *p = in_folder("p.csv"),
+               *tube = "cylinder:0,0.001,0.02:temperature=350,zmax:open:at=0.07";
+    SUCCEED("heat", ROW, "--emissivity", "0.8", "--wall", tube, "--contacts", "hertz", "--contact-conductivity", "30",
+            "-o", q, "--profile", formatted("z:3:%s", p));
+    assert_begins(read_file(p), "z_low,z_high,spheres,T_K,q_W,q_radiation_W,q_conduction_W\n0,");
+    for (int i = 0; i < 3; ++i) {
+        assert_near(column(p, i, 1), (i + 1) * .0602 / 3, 1e-8);
+        ck_assert_double_eq(column(p, i, 2), 1);
+        for (int k = 3; k < 5; ++k) ck_assert_double_eq_tol(column(p, i, k), column(q, i, k - 2), 1e-6);
+        for (int k = 5; k < 7; ++k) ck_assert_double_eq_tol(column(p, i, k), column(q, i, k), 1e-6);
+    }
+    SUCCEED("heat", ROW, "--emissivity", "0.8", "--wall", tube, "-o", q, "--profile", formatted("r:11:%s", p));
+    ck_assert_double_eq(column(p, 0, 2), 0);
+    ck_assert_double_eq(column(p, 1, 2), 3); /* 1 mm from the axis, in bins of 1 mm */
+    assert_near(column(p, 1, 1), .002, 1e-8);
+    assert_near(column(p, 1, 3), (column(q, 0, 1) + column(q, 1, 1) + column(q, 2, 1)) / 3, 1e-8);
+    assert_near(column(p, 1, 4), column(q, 0, 2) + column(q, 1, 2) + column(q, 2, 2), 1e-7);
+    assert_has(read_file(p), "\n0,0.001,0,,\n");
+    FAIL_WITH(2, "heat", ROW, "--emissivity", "0.8", "--profile", formatted("r:%s", p));
+    expect_message("--profile: r needs a wall that is a cylinder", "");
+}
+
 /* A simple cubic lattice of one temperature a sphere conducts 2 k a/d. */
 TEST(a_lattice_conducts) {
     char text[12000] = "x,y,z,radius\n", *at = text + strlen(text);

@@ -477,8 +477,7 @@ TEST(bad_arguments) {
     OWNED fibrad_scene *walled = scene_with(&bed, &(fibrad_scene_config){.wall = &wall, .walls = 1});
     OWNED_WORK work = work_growing();
     fibrad_row row = row_of(2), none = {0}, bare = {.col = row.col, .f = row.f, .capacity = 2};
-    const double good[2] = {.5, .5}, bad[][2] = {{1.1, 1}, {NAN, 1}, {-.1, 1}};
-    const double bad_wall[] = {1.5, -.1, NAN, INFINITY};
+    const double good[2] = {.5, .5}, bad[][2] = {{1.1, 1}, {NAN, 1}, {-.1, 1}}, bad_wall[] = {1.5, -.1, NAN, INFINITY};
     const fibrad_exchange_rule fine = {.emissivity = good};
     fibrad_exchange_rule rule = fine;
     fibrad_displacement d;

@@ -5,7 +5,7 @@
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sf_legendre.h>
 
-#include "exchange/reemission.h"
+#include "exchange/paths.h"
 #include "host_owned.h"
 #include "program.h"
 #include "scenes.h"
@@ -127,11 +127,8 @@ static double to_side(double r, double e, double relative) {
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_WORK work = work_growing();
     const double node = fibrad_node_emissivity(e, relative), black[] = {1, 1, 1, 1, 1, 1};
-    const fibrad_wall_rule rule = {.emissivity = &e,
-                                   .wall_emissivity = black,
-                                   .paths = 1 << 21,
-                                   .conductivity = &relative,
-                                   .node_emissivity = &node};
+    fibrad_wall_rule rule = {.emissivity = &e, .wall_emissivity = black, .paths = 1 << 21, .conductivity = &relative};
+    rule.node_emissivity = &node;
     fibrad_wall_row part[FIBRAD_WALL_PARTS], mean;
     for (uint32_t k = 0; k < FIBRAD_WALL_PARTS; ++k)
         assert_ok(fibrad_exchange_wall(scene, &work, 5, &rule, k, &part[k], NULL));
@@ -178,12 +175,8 @@ static struct hot_bed hot_bed(uint32_t n, double emissivity, double relative) {
 
 static fibrad_bed_matrix *factors_of(const struct hot_bed *h, uint32_t paths, uint64_t seed) {
     const fibrad_spheres spheres = spheres_of(&h->bed);
-    const fibrad_exchange_rule rule = {.emissivity = h->emissivity,
-                                       .paths = paths,
-                                       .directions = 400,
-                                       .seed = seed,
-                                       .conductivity = h->relative,
-                                       .node_emissivity = h->node};
+    fibrad_exchange_rule rule = {.emissivity = h->emissivity, .paths = paths, .directions = 400, .seed = seed};
+    rule.conductivity = h->relative, rule.node_emissivity = h->node;
     fibrad_bed_matrix *factors;
     assert_ok(exchange_of(&h->config, &spheres, &rule, NULL, NULL, &factors));
     return factors;

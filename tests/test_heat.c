@@ -155,29 +155,20 @@ TEST(white_walls_take_nothing) {
     ck_assert_double_gt(-p.result.power[0], .4 * 16 * 4 * PI / 2); /* but at least half as much */
 }
 
-TEST(view_factors_between_the_walls_of_a_cube) {
-    OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1e-4}), 0, 1);
-    p.walls = box_of(.5);
-    p.wall_temperature[4] = 1;
-    trace_and_solve(&p);
-    assert_near(p.wall_power[5], 0.1998249, 5e-3);
-    for (int k = 0; k < 4; k++) assert_near(p.wall_power[k], 0.2000438, 5e-3);
-}
-
 /* More beams bring more rays of walls. Otherwise the exchange of walls would not become better if there are few
  * spheres. */
-TEST(walls_exchange_better_with_more_beams) {
+LOOP_TEST(view_factors_between_the_walls_of_a_cube, 2) {
     OWNED_PROBLEM p = problem_of(BED({0, 0, 0, 1e-4}), 0, 1);
-    p.walls = box_of(.5);
-    p.wall_temperature[4] = 1;
-    p.config.directions = 4000;
+    p.walls = box_of(.5), p.wall_temperature[4] = 1;
+    if (_i == 1) p.config.directions = 4000;
     trace_and_solve(&p);
     double square = 0;
     for (int k = 0; k < 6; k++) {
         const double truth = k == 5 ? 0.1998249 : 0.2000438, error = p.wall_power[k] / truth - 1;
         if (k != 4) square += error * error / 5;
+        if (k != 4) ck_assert_double_le(fabs(error), 5e-3);
     }
-    ck_assert_msg(sqrt(square) < 7e-4, "off by %g", sqrt(square));
+    ck_assert_msg(_i == 0 || sqrt(square) < 7e-4, "off by %g", sqrt(square));
 }
 
 /* Each wall has an estimate of its own error. The true error is seldom above twice the estimate. */

@@ -96,8 +96,7 @@ static struct bed apart(uint64_t seed, uint32_t spheres, double size) {
 
 /* The exact area times view factor from a sphere to another one that nothing hides. */
 static double exact_exchange(const struct bed *bed, uint32_t i, uint32_t j) {
-    const double a[] = {bed->x[i], bed->y[i], bed->z[i], bed->r[i]};
-    const double b[] = {bed->x[j], bed->y[j], bed->z[j], bed->r[j]};
+    const double a[] = {bed->x[i], bed->y[i], bed->z[i], bed->r[i]}, b[] = {bed->x[j], bed->y[j], bed->z[j], bed->r[j]};
     double view;
     ck_assert_int_eq(fibrad_pair_exact(a[3], b[3], distance(a, b) - a[3] - b[3], &view), 0);
     return 4 * PI * a[3] * a[3] * view;

@@ -1,12 +1,11 @@
 /* test_heat_mesh.c - net powers among triangles: against planes in their place, against closed forms, and against
  * themselves under settings that must not matter. SPDX-License-Identifier: MIT */
 #include "heat_runs.h"
-#include "mesh/mesh_patch.h"
+#include "mesh/mesh.h"
 #include "scene/scene.h"
 #include "meshes.h"
 #include "suite.h"
 
-#define PI   3.14159265358979323846
 #define MOST 16 /* walls */
 
 /* Adds a parallelogram, cut into cells of two triangles. From where it is seen, a to b goes counter-clockwise. */

@@ -128,9 +128,7 @@ TEST(parts_are_compact_and_even) {
         trace(&p);
         const fibrad_heat *heat = p.heat;
         uint32_t count[64] = {0}, seen[1000] = {0}, pencils = 0;
-        for (uint32_t k = 0; k < p.bed.n; k++) {
-            count[heat->part[k]]++, seen[heat->sequence[k]]++;
-        }
+        for (uint32_t k = 0; k < p.bed.n; k++) count[heat->part[k]]++, seen[heat->sequence[k]]++;
         for (uint32_t k = 0; k < heat->rows; k++) {
             const unsigned char *at = heat->pencils.pool + heat->pencils.row[k].begin,
                                 *end = at + heat->pencils.row[k].bytes;

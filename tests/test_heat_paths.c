@@ -85,12 +85,11 @@ TEST(an_opening_is_a_black_plane_as_hot_as_the_surroundings) {
         ck_assert_mem_eq(temperature[0], temperature[1], sizeof temperature[0]);
         ck_assert_mem_eq(found[0], found[1], sizeof found[0]);
         double lids = p[1].result.surroundings_power;
-        for (int w = 0; w < FIBRAD_WALLS; w++) {
+        for (int w = 0; w < FIBRAD_WALLS; w++)
             if (open >> w & 1)
                 lids += p[1].wall_power[w];
             else
                 ck_assert_double_eq(p[0].wall_power[w], p[1].wall_power[w]);
-        }
         ck_assert_double_eq_tol(p[0].result.surroundings_power, lids, 1e-12 * fabs(lids));
         free_problem(&p[0]), free_problem(&p[1]);
     }

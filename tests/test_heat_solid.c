@@ -91,8 +91,7 @@ TEST(files_have_insides) {
 
 /* A pebble at 300 K on a floor of 1200 K. If the solid conducts badly, linear emission fails, and a warning says so. */
 TEST(surfaces_below_zero_are_named) {
-    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n");
-    const char *conductivity[] = {"2", "200"};
+    const char *file = write_file("one.csv", "x,y,z,radius\n0,0,0,30\n"), *conductivity[] = {"2", "200"};
     for (int k = 0; k < 2; ++k) {
         SUCCEED("heat", file, "--length-unit", "mm", "--emissivity", "1", "--temperature", "300", "--ambient", "0",
                 "--wall", "zmin:at=-30:temperature=1200", "--solid-conductivity", conductivity[k]);

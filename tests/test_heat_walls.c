@@ -54,11 +54,9 @@ static void solve(fibrad_bed *radiation, struct room *room, double tolerance) {
     sources.temperature = room->temperature, sources.emissivity = room->emissivity;
     sources.wall_temperature = room->wall_temperature, sources.wall_emissivity = room->wall_emissivity;
     sources.surroundings = room->surroundings, sources.tolerance = tolerance;
-    room->result = (fibrad_heat_result){.power = room->power,
-                                        .power_error = room->error,
-                                        .wall_power = room->wall_power,
-                                        .wall_error = room->wall_error,
-                                        .wall_absorbed = room->absorbed};
+    room->result = (fibrad_heat_result){.power = room->power, .power_error = room->error};
+    room->result.wall_power = room->wall_power, room->result.wall_error = room->wall_error;
+    room->result.wall_absorbed = room->absorbed;
     assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &room->result));
 }
 

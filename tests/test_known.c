@@ -51,12 +51,11 @@ static void add_mesh(struct hall *h) {
 /* What bounds the space from 0 to 4 along each axis. */
 static void add_bounds(struct hall *h, int kind) {
     if (kind == 1) h->wall[h->walls++] = cylinder_at(2, 2, 2);
-    for (int face = kind == 1 ? 4 : 0; face < 6; face++) {
+    for (int face = kind == 1 ? 4 : 0; face < 6; face++)
         if (face == 1 || face == 5)
             h->opening[h->openings++] = (fibrad_plane){face / 2, 1, 4};
         else
             h->wall[h->walls++] = plane_at(face / 2, face % 2, face % 2 * 4);
-    }
     if (kind == 2) add_mesh(h);
 }
 
@@ -76,11 +75,8 @@ static struct hall *make_hall(int kind) {
         h->e[i] = i % 2 ? .8 : .3, h->conductivity[i] = .2 + i % 3;
         h->node[i] = fibrad_node_emissivity(h->e[i], h->conductivity[i]);
     }
-    const fibrad_scene_config config = {.wall = h->wall,
-                                        .walls = h->walls,
-                                        .opening = h->opening,
-                                        .openings = h->openings,
-                                        .triangles = h->mesh ? &h->mesh->triangles : NULL};
+    fibrad_scene_config config = {.wall = h->wall, .walls = h->walls, .opening = h->opening, .openings = h->openings};
+    config.triangles = h->mesh ? &h->mesh->triangles : NULL;
     h->scene = scene_with(&h->bed, &config);
     h->work = work_growing();
     h->rule = (fibrad_exchange_rule){.emissivity = h->e, .wall_emissivity = h->wall_e, .directions = DIRECTIONS};
@@ -211,13 +207,8 @@ TEST(all_is_known) {
         const int much = (int)(seed % 3);
         double known[7] = {.1, .7, .3, .9, .2, .11, 0}, sum = 0, left = 1;
         for (int b = 0; b < 6; b++) known[b] *= much ? pow(100, much) : 0;
-        const fibrad_exchange_rule rule = {.emissivity = e,
-                                           .wall_emissivity = wall_e,
-                                           .directions = DIRECTIONS,
-                                           .paths = 37,
-                                           .seed = seed,
-                                           .known = known,
-                                           .known_paths = much == 2 ? 1e9 : 400};
+        fibrad_exchange_rule rule = {.emissivity = e, .wall_emissivity = wall_e, .directions = DIRECTIONS, .paths = 37};
+        rule.seed = seed, rule.known = known, rule.known_paths = much == 2 ? 1e9 : 400;
         OWNED_ROW row = row_of(1), beam = row_of(1);
         assert_ok(fibrad_exchange_row(scene, &work, 0, &rule, &row, NULL));
         const fibrad_beam_rule first = {.directions = DIRECTIONS, .turn = seed};

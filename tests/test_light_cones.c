@@ -30,12 +30,8 @@ LOOP_TEST(spheres_in_wide_cones, 3) {
     const double side = bed.period[0];
     for (int a = 0; a < 3; a++) bed.period[a] = 0;
     OWNED_BY(plain_free) struct plain_bed plain = plain_bed_of(&bed);
-    const fibrad_light light = {.direction = {0, 0, -1},
-                                .flux = 1 / (PI * 4),
-                                .half_angle = half,
-                                .shape = FIBRAD_LIGHT_DISC,
-                                .centre = {side / 2, side / 2, 2 * side},
-                                .radius = 2};
+    fibrad_light light = {.direction = {0, 0, -1}, .flux = 1 / (PI * 4), .centre = {side / 2, side / 2, 2 * side}};
+    light.half_angle = half, light.shape = FIBRAD_LIGHT_DISC, light.radius = 2;
     double black[SPHERES], rays[SPHERES], absorbed[SPHERES], first[SPHERES], error[SPHERES];
     OWNED_MADE *radiation = NULL;
     const fibrad_spheres spheres = spheres_of(&bed);

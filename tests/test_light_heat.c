@@ -127,8 +127,7 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
     double top = -INFINITY;
     for (uint32_t i = 0; i < bed.n; i++) top = fmax(top, bed.z[i] + bed.r[i]);
     for (int k = 0; k < 4; k++) {
-        const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : PI / 6;
-        const double d[3] = {sin(slant), 0, -cos(slant)};
+        const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : PI / 6, d[3] = {sin(slant), 0, -cos(slant)};
         const fibrad_light light = {.direction = {d[0], d[1], d[2]}, .flux = 1 / (144 * cos(slant))};
         OWNED_ABSORBED a = absorb_light(radiation, &bed, &config, &light, absorptivity, 0);
         double rays[LAYERS], ours[LAYERS] = {0}, sum = 0;
@@ -340,11 +339,8 @@ TEST(nothing_absorbs_less_than_its_first_light) {
             eps[i] = k < 5 ? .1 + .1 * k + .4 * bed_make_random(3, i) : 1;
         }
         const fibrad_spheres spheres = spheres_of(&bed);
-        const fibrad_light light = {.direction = {0, 0, -1},
-                                    .flux = 1,
-                                    .shape = FIBRAD_LIGHT_DISC,
-                                    .centre = {.5 * k, .3 * k, 99},
-                                    .radius = .5};
+        fibrad_light light = {.direction = {0, 0, -1}, .flux = 1, .centre = {.5 * k, .3 * k, 99}};
+        light.shape = FIBRAD_LIGHT_DISC, light.radius = .5;
         const fibrad_light_sources sources = {
             .light = &light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &of_wall};
         fibrad_light_result result = {

@@ -40,7 +40,7 @@ TEST(what_is_absorbed_is_said_and_written) {
     }
     ck_assert_double_eq_tol(sum, 0, 1e-8);
     ck_assert_double_eq_tol(all, 4000, 1e-8);
-    assert_begins(read_file(profile), "z_low,z_high,spheres,absorbed_first_W,absorbed_W\n0,0.85,3,");
+    assert_begins(read_file(profile), "z_low,z_high,spheres,T_K,q_W,absorbed_first_W,absorbed_W\n0,0.85,3,300,");
 }
 
 TEST(light_heats) {

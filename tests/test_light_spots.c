@@ -48,10 +48,8 @@ static struct spot_scene lit_scene(int k) {
         s.plain.triangles = &s.mesh->triangles;
     }
     const double slant = .2 * (k % 3);
-    s.light = (fibrad_light){.direction = {sin(slant), 0, -cos(slant)},
-                             .flux = 1 / (PI * spot * spot),
-                             .shape = FIBRAD_LIGHT_DISC,
-                             .radius = spot};
+    s.light = (fibrad_light){.direction = {sin(slant), 0, -cos(slant)}, .flux = 1 / (PI * spot * spot)};
+    s.light.shape = FIBRAD_LIGHT_DISC, s.light.radius = spot;
     uint64_t state = 77 + (uint64_t)k;
     const double at[3] = {side * (.3 + .4 * plain_random(&state)), side * (.3 + .4 * plain_random(&state)), under};
     for (int a = 0; a < 3; a++) s.light.centre[a] = at[a] - 3 * side * s.light.direction[a];
@@ -104,12 +102,9 @@ static void take_ours(const struct spot_scene *s, uint32_t patches, double share
     const fibrad_spheres spheres = spheres_of(&s->bed);
     const fibrad_light_sources sources = {
         .light = &s->light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &s->of_floor};
-    fibrad_light_result result = {.absorbed = share,
-                                  .absorbed_first = first,
-                                  .absorbed_error = error,
-                                  .wall_absorbed = share + SPHERES,
-                                  .wall_absorbed_first = first + SPHERES,
-                                  .wall_absorbed_error = error + SPHERES};
+    fibrad_light_result result = {.absorbed = share, .absorbed_first = first, .absorbed_error = error};
+    result.wall_absorbed = share + SPHERES, result.wall_absorbed_first = first + SPHERES;
+    result.wall_absorbed_error = error + SPHERES;
     for (int i = 0; i < SPHERES; i++) eps[i] = s->absorptivity;
     for (int i = 0; i <= MOST; i++) share[i] = error[i] = 0;
     assert_ok(made_with(&radiation, &s->config, &spheres, &config, &run));
@@ -162,11 +157,8 @@ TEST(a_spot_in_a_crevice) {
     struct spot_scene s = {.bed = BED({0, 0, 1.05, 1}), .absorptivity = .3, .of_floor = .2};
     s.plain = plain_bed_of(&s.bed), s.plain.low[2] = 0;
     s.floor = plane_at(2, 0, 0), s.config.walls = 1;
-    s.light = (fibrad_light){.direction = {-sqrt(.5), 0, -sqrt(.5)},
-                             .flux = 1 / (PI * .05 * .05),
-                             .shape = FIBRAD_LIGHT_DISC,
-                             .centre = {2.6, 0, 2},
-                             .radius = .05};
+    s.light = (fibrad_light){.direction = {-sqrt(.5), 0, -sqrt(.5)}, .centre = {2.6, 0, 2}};
+    s.light.flux = 1 / (PI * .05 * .05), s.light.shape = FIBRAD_LIGHT_DISC, s.light.radius = .05;
     settle_scene(&s);
     ck_assert_int_eq(check_scene(&s, 1000000, &values), 0);
     free_scene(&s);
@@ -296,11 +288,8 @@ TEST(shadows_on_an_endless_floor) {
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_light_sources sources = {
         .light = &light, .lights = 1, .absorptivity = eps, .wall_absorptivity = &of_floor};
-    fibrad_light_result result = {.absorbed = absorbed,
-                                  .absorbed_first = first,
-                                  .absorbed_error = error,
-                                  .wall_absorbed = &wall,
-                                  .wall_absorbed_first = &wall_first};
+    fibrad_light_result result = {.absorbed = absorbed, .absorbed_first = first, .absorbed_error = error};
+    result.wall_absorbed = &wall, result.wall_absorbed_first = &wall_first;
     assert_ok(made_with(&radiation, &config, &spheres, NULL, NULL));
     assert_ok(fibrad_bed_shine(radiation, &sources, &result));
 #pragma omp parallel for schedule(static) reduction(+ : rays[:FEW])

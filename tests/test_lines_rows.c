@@ -18,8 +18,6 @@
 
 enum { N_MOST = 80, DISCS_MOST = 20000, NOTHING = N_MOST };
 
-static const double pi = 3.14159265358979323846;
-
 /* A sphere seen from sphere k along d: its centre relative to that of k, across d and along d. */
 struct disc {
     double x, y, depth, r;
@@ -51,13 +49,13 @@ static bool find_arc(struct disc *m, double r, double rounding) {
     const double half =
         2 * atan(sqrt((larger + distance) * (m->r + r - distance) / ((distance - larger) * (distance + m->r + r))));
     const double begin = atan2(m->y, m->x) - half;
-    m->from = begin < 0 ? begin + 2 * pi : begin;
+    m->from = begin < 0 ? begin + 2 * M_PI : begin;
     m->to = m->from + 2 * half;
     return true;
 }
 
 static bool covers(const struct disc *m, double angle) {
-    return m->all || (angle >= m->from && angle <= m->to) || (angle + 2 * pi >= m->from && angle + 2 * pi <= m->to);
+    return m->all || (angle >= m->from && angle <= m->to) || (angle + 2 * M_PI >= m->from && angle + 2 * M_PI <= m->to);
 }
 
 /* The integral g of an arc of the circle of radius r. The origin lies at (x, y) as seen from the centre. */
@@ -117,11 +115,11 @@ static void follow_circle(const struct bed *bed, uint32_t k, const double frame[
                     if (j == k && p == 0 && q == 0 && s == 0) continue;
                     count = add_disc(count, c, bed->r[j], j, frame, &own, rounding);
                 }
-    ends[n++] = 0, ends[n++] = 2 * pi;
+    ends[n++] = 0, ends[n++] = 2 * M_PI;
     for (uint32_t m = 0; m < count; m++) {
         if (discs[m].all) continue;
         ends[n++] = discs[m].from;
-        ends[n++] = discs[m].to >= 2 * pi ? discs[m].to - 2 * pi : discs[m].to;
+        ends[n++] = discs[m].to >= 2 * M_PI ? discs[m].to - 2 * M_PI : discs[m].to;
     }
     qsort(ends, n, sizeof *ends, compare_doubles);
     for (uint32_t e = 0; e + 1 < n; e++)
@@ -182,7 +180,7 @@ static void compare_methods(struct bed bed, uint32_t lines, int images, double l
     find_rows(scene, set);
     follow_all_circles(&bed, set, images);
     for (uint32_t i = 0; i < bed.n; i++) {
-        const double area = bed.r[i] * bed.r[i], scale = 1 / (2 * set->n * pi * area);
+        const double area = bed.r[i] * bed.r[i], scale = 1 / (2 * set->n * M_PI * area);
         double sum = exchanged[i][NOTHING] * scale;
         for (uint32_t j = 0; j < bed.n; j++) {
             const double windows = (f[i][j] + f[j][i] * bed.r[j] * bed.r[j] / area) / 2;

@@ -109,8 +109,7 @@ TEST(rows_missing_or_double_are_named) {
                     if (i == twice) assert_ok(fibrad_rows_add(&rows[i % 2], &row, 0));
                 }
                 const fibrad_matrix_rule rule = {.raw = raw};
-                const bool doubled = twice < 5 && (twice != missing);
-                const bool lacks = missing < 5 && twice != missing;
+                const bool doubled = twice < 5 && (twice != missing), lacks = missing < 5 && twice != missing;
                 fibrad_matrix *m = NULL;
                 uint32_t sphere = 99;
                 const size_t size = fibrad_matrix_size(scene, rows, 2, &rule);
@@ -357,14 +356,8 @@ TEST(collections_in_fixed_memory_say_what_they_lack) {
 TEST(rows_are_read_as_they_were_appended) {
     uint32_t col[] = {3, 5, 9};
     double f[] = {.25, .125, .0625}, wall[] = {.5};
-    const fibrad_row in = {.col = col,
-                           .f = f,
-                           .wall = wall,
-                           .length = 3,
-                           .escaped = .03125,
-                           .beyond = .03125,
-                           .error = .01,
-                           .symmetric = 1};
+    fibrad_row in = {.col = col, .f = f, .wall = wall, .length = 3, .escaped = .03125, .beyond = .03125, .error = .01};
+    in.symmetric = 1;
     OWNED_ROWS rows = {.memory = memory_growing()};
     fibrad_row out;
     size_t at = 0;

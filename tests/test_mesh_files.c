@@ -4,6 +4,7 @@
 #include "mesh/meshes.h"
 #include "plot/plot_slice.h"
 #include "soups.h"
+#include "vtp_text.h"
 #include "read/vtk/vtk_grid.h"
 
 FIXTURE(make_folder, remove_folder)
@@ -310,29 +311,15 @@ TEST(names_of_meshes) {
     ck_assert_int_eq(walls_option("mesh:", &(struct wall_options){0}), 2);
 }
 
-/* Reads an array of doubles of a .vtp, which has at least n elements. */
-static void vtp_array(const char *path, const char *name, double *values, size_t n) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const char *at = strstr(read_file(path), formatted("Name=\"%s\"", name));
-    ck_assert_msg(at != NULL, "%s has no array %s", path, name);
-    at = strchr(at, '>') + 1;
-    OWNED unsigned char *bytes = calloc(8 + n * sizeof *values + 3, 1);
-    uint32_t bits = 0;
-    for (size_t k = 0, to = 0; to < 8 + n * sizeof *values; ++at) {
-        const char *digit = *at ? strchr(digits, *at) : NULL;
-        if (!digit) continue;
-        bits = bits << 6 | (uint32_t)(digit - digits);
-        if (++k % 4) continue;
-        for (int shift = 16; shift >= 0; shift -= 8) bytes[to++] = bits >> shift & 255;
-    }
-    memcpy(values, bytes + 8, n * sizeof *values);
+static void read_array(const char *path, const char *name, double *values, size_t n) {
+    vtp_array(read_file(path), name, values, n);
 }
 
 /* The sum of fluxes, or of another quantity per area, over n triangles from `first` on. */
 static double gain_of(const char *path, const char *name, size_t first, size_t n) {
     double flux[200], area[200], sum = 0;
-    vtp_array(path, name, flux, first + n);
-    vtp_array(path, "area", area, first + n);
+    read_array(path, name, flux, first + n);
+    read_array(path, "area", area, first + n);
     for (size_t t = first; t < first + n; ++t) sum += flux[t] * area[t];
     return sum;
 }
@@ -445,7 +432,7 @@ TEST(heat_of_triangles) {
     SUCCEED("heat", bed, "--length-unit", "cm", "--wall", wall_of("mesh:", box, AT_400), STATE, out);
     double kelvins[12], both[12], front[12];
     ck_assert_double_eq_tol(1e-4 * gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
-    vtp_array(out, "temperature_K", kelvins, 12);
+    read_array(out, "temperature_K", kelvins, 12);
     for (int t = 0; t < 12; ++t) ck_assert_double_eq(kelvins[t], 400);
     assert_lacks(read_file(out), "front_W");
 
@@ -454,7 +441,7 @@ TEST(heat_of_triangles) {
     ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 12) / value_of("wall_box_W"), 1, 1e-5);
     const double outside = gain_of(out, "flux_front_W_m2", 0, 12); /* the fronts of the cube face outwards */
     ck_assert_double_eq_tol(outside, .6 * 384 * 5.670374419e-8 * (pow(300, 4) - pow(400, 4)), 1e-3 * fabs(outside));
-    vtp_array(out, "temperature_front_K", front, 12), vtp_array(out, "temperature_K", both, 12);
+    read_array(out, "temperature_front_K", front, 12), read_array(out, "temperature_K", both, 12);
     for (int t = 0; t < 12; ++t) ck_assert(front[t] == 400 && both[t] == 400);
 
     const char *two = in_folder("two.stl");
@@ -468,7 +455,7 @@ TEST(heat_of_triangles) {
             wall_of("mesh:", two, ":solids:insulated:emissivity=0.6,two_low:temperature=400"), STATE, out, "--ambient",
             "0");
     ck_assert_double_eq_tol(gain_of(out, "flux_W_m2", 0, 4) / value_of("wall_two_low_W"), 1, 1e-5);
-    vtp_array(out, "temperature_K", kelvins, 12), vtp_array(out, "flux_W_m2", both, 12);
+    read_array(out, "temperature_K", kelvins, 12), read_array(out, "flux_W_m2", both, 12);
     for (int t = 4; t < 12; ++t) ck_assert(both[t] == 0 && kelvins[t] > 400 && kelvins[t] < 700);
 
     SUCCEED("heat", bed, "--length-unit", "m", "--wall", wall_of("mesh:", box, AT_400), STATE, in_folder("t.*.vtp"),
@@ -504,7 +491,7 @@ TEST(more_rays_for_triangles) {
     for (int run = 0; run < 3; ++run) {
         SUCCEED("heat", bed, "--length-unit", "m", "--wall", formatted("mesh:%s:temperatures=%s", box, column),
                 "--emissivity", "0.7", "--temperature", "300", "--wall-vtp", out, "--wall-rays", rays[run]);
-        vtp_array(out, "flux_W_m2", flux[run], 768);
+        read_array(out, "flux_W_m2", flux[run], 768);
     }
     double off[2] = {0};
     for (int run = 0; run < 2; ++run)
@@ -526,7 +513,7 @@ TEST(temperatures_of_triangles) {
     const char *mesh = formatted("mesh:%s:temperatures=%s:emissivity=.6", box, column);
     double kelvins[12];
     SUCCEED("heat", bed, "--length-unit", "m", "--wall", mesh, "--temperature-unit", "C", STATE, out);
-    vtp_array(out, "temperature_K", kelvins, 12);
+    read_array(out, "temperature_K", kelvins, 12);
     double mean = 0;
     for (int t = 0; t < 12; ++t) {
         ck_assert_double_eq_tol(kelvins[t], 373.15 + 10 * (t + 1), 1e-9);

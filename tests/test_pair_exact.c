@@ -36,8 +36,7 @@ TEST(factors_are_the_true_values) {
 }
 
 TEST(factors_are_the_closed_forms) {
-    const double pi = 3.14159265358979323846;
-    ck_assert_double_le(relative(exact(1, 1, 0), 0.5 - 4 / (3 * pi)), 1e-15);
+    ck_assert_double_le(relative(exact(1, 1, 0), 0.5 - 4 / (3 * M_PI)), 1e-15);
     ck_assert_double_le(relative(exact(1, 1, 0), 0.0755868184216124), 1e-14);
     /* a small sphere that touches a plane sees it in half of its directions */
     ck_assert_double_le(fabs(exact(1e-8, 1, 0) - 0.5), 1e-4);
@@ -59,8 +58,7 @@ TEST(far_spheres_have_the_far_field) {
 
 /* The lens integral has neither the variable nor the integrand of the kernel's formula. */
 TEST(quadratures_of_gsl_agree) {
-    static const double radius[] = {1, 0.7, 0.1, 1e-3, 1e-4};
-    static const double gap[] = {0, 1e-12, 1e-6, 1e-3, 0.1, 1, 6, 100, 1e6};
+    static const double radius[] = {1, 0.7, 0.1, 1e-3, 1e-4}, gap[] = {0, 1e-12, 1e-6, 1e-3, 0.1, 1, 6, 100, 1e6};
     static const double overlap[] = {-1e-9, -1e-6, -1e-4, -0.01, -0.5, -1.5};
     double f12, abserr;
     for (size_t i = 0; i < sizeof radius / sizeof *radius; i++) {
@@ -85,8 +83,7 @@ static const double scene[][3] = {{1, 1, 0},     {1, 0.3, 1e-12},  {0.7, 1.3, 1e
 TEST(scaling_by_two_changes_no_bit) {
     for (size_t i = 0; i < sizeof scene / sizeof *scene; i++)
         for (int k = -480; k <= 480; k += 6) {
-            const double *s = scene[i];
-            const double scaled = exact(ldexp(s[0], k), ldexp(s[1], k), ldexp(s[2], k));
+            const double *s = scene[i], scaled = exact(ldexp(s[0], k), ldexp(s[1], k), ldexp(s[2], k));
             ck_assert_msg(scaled == exact(s[0], s[1], s[2]), "scene %d scaled by 2^%d", (int)i, k);
         }
 }

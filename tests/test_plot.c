@@ -132,10 +132,8 @@ struct heat_shown {
 
 static int draw_heat(const struct output *output, const void *heat_shown) {
     const struct heat_shown *shown = heat_shown;
-    const fibrad_heat_result result = {.temperature = (double *)shown->temperature,
-                                       .power = (double *)shown->power,
-                                       .conducted = (double *)shown->conducted,
-                                       .wall_temperature = (double *)shown->wall_temperature};
+    fibrad_heat_result result = {.temperature = (double *)shown->temperature, .power = (double *)shown->power};
+    result.conducted = (double *)shown->conducted, result.wall_temperature = (double *)shown->wall_temperature;
     const fibrad_light_result light = {.absorbed = (double *)shown->absorbed};
     const struct contents what = {
         .bed = shown->bed, .walls = shown->walls, .result = &result, .light = shown->absorbed ? &light : NULL};
@@ -189,11 +187,8 @@ LOOP_TEST(tall_and_flat_beds, 3) {
                          0);
         temperature[i] = 500 + i, power[i] = i - 1e-3;
     }
-    const struct heat_shown what = {.bed = &bed,
-                                    .walls = &(struct walls){0},
-                                    .temperature = temperature,
-                                    .power = power,
-                                    .plane = {.axis = _i == 2 ? 'z' : 0}};
+    struct heat_shown what = {.bed = &bed, .walls = &(struct walls){0}, .plane = {.axis = _i == 2 ? 'z' : 0}};
+    what.temperature = temperature, what.power = power;
     OWNED char *svg = drawn(draw_heat, &what);
     assert_texts_inside(svg, 700);
     assert_has(svg, _i == 2 ? ">y [mm]<" : ">z [m]<");

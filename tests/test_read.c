@@ -543,10 +543,8 @@ LOOP_TEST(ranges_of_frames_are_read, 22) {
 
 /* Packs a text as gzip does. */
 static size_t pack(const char *text, size_t size, char *to, size_t room) {
-    z_stream stream = {.next_in = (unsigned char *)(uintptr_t)text,
-                       .avail_in = (unsigned)size,
-                       .next_out = (unsigned char *)to,
-                       .avail_out = (unsigned)room};
+    z_stream stream = {.next_in = (unsigned char *)(uintptr_t)text, .avail_in = (unsigned)size};
+    stream.next_out = (unsigned char *)to, stream.avail_out = (unsigned)room;
     ck_assert_int_eq(deflateInit2(&stream, 6, Z_DEFLATED, 31, 8, Z_DEFAULT_STRATEGY), Z_OK);
     ck_assert_int_eq(deflate(&stream, Z_FINISH), Z_STREAM_END);
     const size_t packed = stream.total_out;

@@ -1,10 +1,8 @@
 /* test_read_furnace.c - box files: every key, every fault with its line, and what is written.
  * SPDX-License-Identifier: MIT */
-#include "papers/furnace/furnace_cases.h"
+#include "papers/furnace/furnace.h"
 #include "cli/message.h"
-#include "papers/furnace/read_furnace.h"
 #include "one_file.h"
-#include "papers/furnace/write_furnace.h"
 
 static fibrad_furnace_config config;
 

@@ -277,15 +277,16 @@ TEST(any_image_of_a_centre_will_do) {
     }
 }
 
+static void expect_few_in_cells(const fibrad_scene *scene) {
+    for (uint32_t c = 0; c < scene->facts.cells; c++) ck_assert_uint_le(scene->start[c + 1] - scene->start[c], 16);
+}
+
 /* A particle that a simulation has lost must not put all others into one cell. */
 TEST(strays_do_not_spread_the_cells) {
     OWNED_BED bed = packing(4000, .5, .6, .5, 30, false);
     bed.x[17] = 1e6, bed.y[99] = -1e9, bed.z[3000] = 1e12;
     OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
-    uint32_t most = 0;
-    for (uint32_t c = 0; c < scene->facts.cells; c++)
-        if (scene->start[c + 1] - scene->start[c] > most) most = scene->start[c + 1] - scene->start[c];
-    ck_assert_uint_le(most, 16);
+    expect_few_in_cells(scene);
 }
 
 TEST(overlap_is_reported) {
@@ -361,10 +362,7 @@ TEST(cells_follow_the_spheres) {
                        spans[s][2] * bed_make_random(5, 3 * i + 2), 1e-7);
         OWNED fibrad_scene *scene = scene_of(&bed, FIBRAD_ISA_SCALAR);
         ck_assert_uint_le(scene->facts.cells, 4000 + 8);
-        uint32_t most = 0;
-        for (uint32_t c = 0; c < scene->facts.cells; c++)
-            if (scene->start[c + 1] - scene->start[c] > most) most = scene->start[c + 1] - scene->start[c];
-        ck_assert_uint_le(most, 16);
+        expect_few_in_cells(scene);
     }
 }
 

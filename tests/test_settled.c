@@ -33,11 +33,9 @@ static void begin(struct settled *s, struct bed bed) {
     fibrad_heat_sources_init(&s->sources);
     s->sources.temperature = s->temperature, s->sources.emissivity = s->emissivity;
     s->sources.surroundings = 300;
-    s->result = (fibrad_heat_result){.power = s->found.power,
-                                     .wall_power = s->found.wall_power,
-                                     .temperature = s->found.temperature,
-                                     .wall_temperature = s->found.wall_temperature,
-                                     .temperature_error = s->found.error};
+    s->result = (fibrad_heat_result){.power = s->found.power, .wall_power = s->found.wall_power};
+    s->result.temperature = s->found.temperature, s->result.wall_temperature = s->found.wall_temperature;
+    s->result.temperature_error = s->found.error;
 }
 
 static void add_wall(struct settled *s, int axis, int upper, double at, double temperature, double emissivity) {

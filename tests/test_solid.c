@@ -7,7 +7,7 @@
 
 #include "conductivity/conductivity.h"
 #include "bed/packing.h"
-#include "exchange/reemission.h"
+#include "exchange/paths.h"
 #include "frames/solid_option.h"
 #include "program.h"
 

@@ -1,5 +1,5 @@
-/* test_stress.c - attempts to break the numerics: distance from the origin, contact, ratio of radii, lattices along the
- * beams, obstacles, random scenes by the million. SPDX-License-Identifier: MIT
+/* test_stress.c - attempts to break the numerics: distance from the origin, contact, ratio of radii, obstacles,
+ * random scenes by the million. SPDX-License-Identifier: MIT
  *
  * `make test` runs a part of each attack, and `make stress` (STRESS=1 in the environment) runs all. One line for each
  * attack tells the worst error that was seen and the tolerance. */
@@ -115,43 +115,6 @@ TEST(radius_ratios) {
     report("radius ratios 1 ... 1e6, beams from the smaller sphere: F", from_small, 3e-3);
     report("radius ratios 1 ... 1e6, beams from the larger sphere: F", from_large, 1e-4);
     report("radius ratios 1e-6 ... 1e6: sum + escaped - 1", open, 1e-12);
-}
-
-/* Lattices are turned so that one of their axes lies along a beam, or a little beside it. The row agrees with that of
- * the lattice in which each sphere is moved by 1e-9. So no single beam matters that much. */
-TEST(lattices_along_the_beams) {
-    static const double axes[][3] = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}};
-    double worst = 0, open = 0;
-    for (int kind = 0; kind < 3; kind++)
-        for (int a = 0; a < 3; a++)
-            for (uint64_t k = 0; k < rounds(3, 34); k++) {
-                double w[3], axis[3], length = sqrt(axes[a][0] + axes[a][1] + axes[a][2]), cosine = 0, m[3][3];
-                assert_ok(fibrad_direction((uint32_t)k, 34, w));
-                for (int c = 0; c < 3; c++) axis[c] = axes[a][c] / length, cosine += axis[c] * w[c];
-                /* R = I + [v] + [v]^2/(1 + cosine), v = axis x w, turns the axis into w */
-                double v[3] = {axis[1] * w[2] - axis[2] * w[1], axis[2] * w[0] - axis[0] * w[2],
-                               axis[0] * w[1] - axis[1] * w[0]};
-                double square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], s = 1 / (1 + cosine);
-                const double cross[3][3] = {{0, -v[2], v[1]}, {v[2], 0, -v[0]}, {-v[1], v[0], 0}};
-                for (int p = 0; p < 3; p++)
-                    for (int q = 0; q < 3; q++)
-                        m[p][q] = (p == q) + cross[p][q] + s * (v[p] * v[q] - (p == q) * square);
-                OWNED_BED bed = lattice("pif"[kind], 7), moved = lattice("pif"[kind], 7);
-                for (uint32_t i = 0; i < bed.n; i++) {
-                    double c[3] = {bed.x[i], bed.y[i], bed.z[i]};
-                    double *to[3] = {&bed.x[i], &bed.y[i], &bed.z[i]},
-                           *other[3] = {&moved.x[i], &moved.y[i], &moved.z[i]};
-                    for (int p = 0; p < 3; p++) {
-                        *to[p] = m[p][0] * c[0] + m[p][1] * c[1] + m[p][2] * c[2];
-                        *other[p] = *to[p] + 1e-9 * random_in(4, -1, 1);
-                    }
-                }
-                OWNED_ROW row = beam(&bed, 0, 34), other = beam(&moved, 0, 34);
-                worst_of(&worst, row_distance(&row, &other));
-                worst_of(&open, closure(&row));
-            }
-    report("SC, BCC, FCC along the beams, against 1e-9 beside them", worst, 1e-7);
-    report("SC, BCC, FCC along the beams: sum + escaped - 1", open, 1e-9); /* the bound of degenerate windows */
 }
 
 /* ---- obstacles -------------------------------------------------------------------------------------------------- */

@@ -43,8 +43,7 @@ static void assert_long_angle(const fibrad_long_angle *a, uint64_t remainder) {
     ck_assert_ldouble_le(fabsl((long double)a->cos_rest), half_ulp(a->cos));
     ck_assert_ldouble_le(fabsl((long double)a->sin_rest), half_ulp(a->sin));
     double c2 = a->cos * a->cos, c2_rest = fma(a->cos, a->cos, -c2);
-    double s2 = a->sin * a->sin, s2_rest = fma(a->sin, a->sin, -s2);
-    double large = fmax(c2, s2), small = fmin(c2, s2);
+    double s2 = a->sin * a->sin, s2_rest = fma(a->sin, a->sin, -s2), large = fmax(c2, s2), small = fmin(c2, s2);
     double excess = (large - 1) + small; /* this is exact, since the larger part is at least 1/2 */
     ck_assert_double_le(fabs(excess + c2_rest + s2_rest + 2 * (a->cos * a->cos_rest + a->sin * a->sin_rest)), 1e-31);
 }

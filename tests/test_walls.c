@@ -690,14 +690,8 @@ static struct matrix closed(const double wall[3][3], const double escaped[3]) {
     float half[2] = {0, 0};
     for (uint32_t i = 0; i < 3; i++) {
         memcpy(own, wall[i], sizeof own);
-        const fibrad_row row = {.sphere = i,
-                                .lines = true,
-                                .col = col[i],
-                                .f = f[i],
-                                .half = half,
-                                .wall = own,
-                                .length = i == 1 ? 2 : 1,
-                                .escaped = escaped[i]};
+        fibrad_row row = {.sphere = i, .lines = true, .col = col[i], .f = f[i], .half = half, .wall = own};
+        row.length = i == 1 ? 2 : 1, row.escaped = escaped[i];
         assert_ok(fibrad_rows_add(&rows, &row, 3));
     }
     struct matrix m = matrix_of(scene, &rows, 1, NULL);

@@ -14,6 +14,7 @@
 #include "text/text.h"
 #include "read/read.h"
 #include "suite.h"
+#include "vtp_text.h"
 #include "write/outputs.h"
 
 /* Three spheres, of which row 1 was not computed. */
@@ -288,52 +289,29 @@ LOOP_TEST(matrix_market_has_ids_and_entries, 2) {
     ck_assert_str_eq(line, "\n");
 }
 
-/* Decodes the inline binary array of a name. Returns the number of 8-byte values. */
-static size_t array(const char *name, void *values, size_t capacity) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    unsigned char bytes[1000] = {0};
-    size_t n = 0;
-    unsigned bits = 0, held = 0;
-    const char *from = strstr(text, formatted("Name=\"%s\"", name));
-    ck_assert_msg(from != NULL, "no array %s", name);
-    for (from = strchr(from, '\n') + 1; *from != '\n' && *from != '='; ++from) {
-        const char *digit = strchr(digits, *from);
-        ck_assert_ptr_nonnull(digit);
-        bits = bits << 6 | (unsigned)(digit - digits);
-        held += 6;
-        if (held < 8) continue;
-        held -= 8;
-        ck_assert_uint_lt(n, sizeof bytes);
-        bytes[n++] = (unsigned char)(bits >> held);
-    }
-    uint64_t length;
-    memcpy(&length, bytes, sizeof length);
-    ck_assert_uint_eq(length, n - 8);
-    ck_assert_uint_le(length, capacity * 8);
-    memcpy(values, bytes + 8, length);
-    return length / 8;
+static void expect_array(const char *name, const void *wanted_values, size_t n) {
+    uint64_t values[9];
+    ck_assert_uint_eq(vtp_array(text, name, values, n), n);
+    ck_assert_msg(memcmp(values, wanted_values, 8 * n) == 0, "%s", name);
+}
+
+/* Checks the values of an array of rows. The middle row was not computed. */
+static void expect_rows(const char *name, double first, double last) {
+    double values[3];
+    ck_assert_uint_eq(vtp_array(text, name, values, 3), 3);
+    ck_assert_msg(values[0] == first && isnan(values[1]) && values[2] == last, "%s", name);
 }
 
 TEST(paraview_files_have_all_arrays) {
-    double values[9];
-    int64_t whole[3];
     write_matrix(write_vtp, false, NULL);
     assert_has(text, "NumberOfPoints=\"3\" NumberOfVerts=\"3\"");
-    ck_assert_uint_eq(array("Points", values, 9), 9);
-    for (int i = 0; i < 3; ++i)
-        ck_assert(values[3 * i] == x[i] && values[3 * i + 1] == y[i] && values[3 * i + 2] == z[i]);
-    ck_assert_uint_eq(array("radius", values, 3), 3);
-    ck_assert_int_eq(memcmp(values, r, sizeof r), 0);
-    ck_assert_uint_eq(array("row_sum", values, 3), 3);
-    ck_assert(values[0] == row_sum[0] && isnan(values[1]) && values[2] == row_sum[2]);
-    ck_assert_uint_eq(array("escaped", values, 3), 3);
-    ck_assert(values[0] == 0.5 && isnan(values[1]) && values[2] == 0.25);
-    ck_assert_uint_eq(array("neighbours", whole, 3), 3);
-    ck_assert(whole[0] == 2 && whole[1] == 0 && whole[2] == 2);
-    ck_assert_uint_eq(array("connectivity", whole, 3), 3);
-    ck_assert(whole[0] == 0 && whole[1] == 1 && whole[2] == 2);
-    ck_assert_uint_eq(array("offsets", whole, 3), 3);
-    ck_assert(whole[0] == 1 && whole[1] == 2 && whole[2] == 3);
+    expect_array("Points", (double[]){x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]}, 9);
+    expect_array("radius", r, 3);
+    expect_rows("row_sum", row_sum[0], row_sum[2]);
+    expect_rows("escaped", 0.5, 0.25);
+    expect_array("neighbours", (int64_t[]){2, 0, 2}, 3);
+    expect_array("connectivity", (int64_t[]){0, 1, 2}, 3);
+    expect_array("offsets", (int64_t[]){1, 2, 3}, 3);
     const char *end = strstr(text, "</VTKFile>\n");
     ck_assert_ptr_nonnull(end);
     ck_assert_uint_eq(strlen(end), 11);
@@ -341,21 +319,15 @@ TEST(paraview_files_have_all_arrays) {
     assert_lacks(text, "Name=\"wall_");
 
     write_matrix(write_vtp, true, &walls);
-    ck_assert_uint_eq(array("id", whole, 3), 3);
-    ck_assert_int_eq(memcmp(whole, id, sizeof id), 0);
-    ck_assert_uint_eq(array("wall_cylinder", values, 3), 3);
-    ck_assert(values[0] == 0.0625 && isnan(values[1]) && values[2] == 0);
-    ck_assert_uint_eq(array("wall_zmin", values, 3), 3);
-    ck_assert(values[0] == 0.25);
+    expect_array("id", id, 3);
+    expect_rows("wall_cylinder", 0.0625, 0);
+    expect_rows("wall_zmin", 0.25, 0);
 
     write_heat(write_heat_vtp, &(struct contents){.bed = &bed, .walls = &walls});
-    ck_assert_uint_eq(array("id", whole, 3), 3);
-    ck_assert_uint_eq(array("temperature_K", values, 3), 3);
-    ck_assert_int_eq(memcmp(values, kelvins, sizeof kelvins), 0);
-    ck_assert_uint_eq(array("power_W", values, 3), 3);
-    ck_assert_int_eq(memcmp(values, watts, sizeof watts), 0);
-    ck_assert_uint_eq(array("emissivity", values, 3), 3);
-    ck_assert_int_eq(memcmp(values, r, sizeof r), 0);
+    expect_array("id", id, 3);
+    expect_array("temperature_K", kelvins, 3);
+    expect_array("power_W", watts, 3);
+    expect_array("emissivity", r, 3);
 }
 
 /* Where the data of the next member begin, after the 128 bytes of its array's header. */

@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 
 fibrad_spheres bed_spheres(const struct bed *bed) {

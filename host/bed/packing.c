@@ -4,10 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
-
-#define PI 3.14159265358979323846
 
 double bed_make_random(uint64_t seed, uint64_t count) {
     uint64_t z = (seed + 1) * 0xd1342543de82ef95u + count * 0x9e3779b97f4a7c15u;
@@ -119,7 +116,7 @@ static int pack(struct bed *bed, uint32_t n, double low, double high, double fra
         const double r = low + (high - low) * bed_make_random(seed, 4 * (uint64_t)i);
         const int status = bed_add(bed, &(struct bed_sphere){.r = r});
         if (status) return status;
-        volume += 4 * PI / 3 * r * r * r;
+        volume += 4 * M_PI / 3 * r * r * r;
         largest = fmax(largest, r);
     }
     const double edge = cbrt(volume / fraction);
@@ -172,7 +169,7 @@ static bool sweep_by_size(struct bed *bed, double edge, struct cells *cells) {
 
 int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fraction, uint64_t seed) {
     const uint32_t small = (uint32_t)(large * ratio * ratio * ratio + 0.5), n = large + small;
-    const double edge = cbrt(4 * PI / 3 * (small + large * ratio * ratio * ratio) / fraction);
+    const double edge = cbrt(4 * M_PI / 3 * (small + large * ratio * ratio * ratio) / fraction);
     for (uint32_t i = 0; i < n; ++i) {
         const int status = bed_add(bed, &(struct bed_sphere){.x = edge * bed_make_random(seed, 3 * (uint64_t)i),
                                                              .y = edge * bed_make_random(seed, 3 * (uint64_t)i + 1),

@@ -57,3 +57,10 @@ struct prefixed unit_prefixed(double largest, const char *unit) {
         snprintf(made.name, sizeof made.name, "10^{%d}%s%.12s", 3 * thousands, *unit ? " " : "", unit);
     return made;
 }
+
+struct prefixed unit_seconds(double largest) {
+    static const struct prefixed unit[] = {{86400, "d"}, {3600, "h"}, {60, "min"}};
+    for (size_t k = 0; k < sizeof unit / sizeof *unit; ++k)
+        if (largest >= 2 * unit[k].scale) return unit[k];
+    return unit_prefixed(largest, "s");
+}

@@ -26,12 +26,15 @@ int temperature_unit_option(const char *text, void *zero);
 
 /* A unit: `scale` of the plain one. */
 struct prefixed {
-    double scale;  /* a power of 1000 */
+    double scale;  /* of a power of 1000; of times also a minute, an hour, a day */
     char name[24]; /* mW, kW, 10^{15} W; "": the plain unit has no name and the scale is 1 */
 };
 
 /* The unit in which the largest size of a quantity is from 0.1 to 1000, or the plain unit if the size is 0. unit:
  * name of the plain unit; "": it has none, and the name is a power of ten. */
 struct prefixed unit_prefixed(double largest, const char *unit);
+
+/* The unit for times up to this number of seconds: minutes, hours and days from two of them on. */
+struct prefixed unit_seconds(double largest);
 
 #endif

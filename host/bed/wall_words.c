@@ -29,7 +29,7 @@ enum { SHAPES = sizeof shapes / sizeof *shapes };
 /* What is the value of a key. */
 enum value { FLAG, NUMBER, TEXT };
 
-#define OPEN_EXCLUDES (WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CAPACITY)
+#define OPEN_EXCLUDES (WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CAPACITY | WALL_CONVECTION | WALL_GAS)
 
 static const struct key {
     const char *name, *example; /* of a value */
@@ -54,6 +54,9 @@ static const struct key {
      offsetof(struct wall_words, absorptivity)},
     {"capacity", "500", WALL_CAPACITY, WALL_OPEN, WALL_NONE, NUMBER, 1e-300, 1e300,
      offsetof(struct wall_words, capacity)},
+    {"convection", "20", WALL_CONVECTION, WALL_OPEN, WALL_NONE, NUMBER, 0, 1e12,
+     offsetof(struct wall_words, convection)},
+    {"gas", "300", WALL_GAS, WALL_OPEN, WALL_NONE, NUMBER, -1e9, 1e9, offsetof(struct wall_words, gas)},
     {"name", "lid", WALL_OTHER_NAME, 0, WALL_MESH, TEXT, 0, 0, offsetof(struct wall_words, mesh.name)},
     {"solids", NULL, WALL_SOLIDS, 0, WALL_MESH, FLAG, 0, 0, 0},
     {"scale", "0.001", WALL_SCALE, 0, WALL_MESH, NUMBER, 1e-12, 1e12, offsetof(struct wall_words, mesh.scale)},
@@ -104,13 +107,8 @@ bool wall_words_shape(const char *word) { return find_shape(word) < SHAPES; }
 static bool begin_wall(struct wall_words *wall, const char *word, unsigned allowed, char fault[WALL_FAULT]) {
     const int k = find_shape(word);
     if (k == SHAPES && !(allowed & WALL_NAMES_TOO)) return wall_words_no_shape(word, fault);
-    *wall = (struct wall_words){.shape = k < SHAPES ? shapes[k].shape : WALL_NAMED,
-                                .word = word,
-                                .mesh.scale = 1,
-                                .temperature = NAN,
-                                .power = NAN,
-                                .emissivity = 1,
-                                .absorptivity = NAN};
+    *wall = (struct wall_words){.shape = k < SHAPES ? shapes[k].shape : WALL_NAMED, .word = word, .emissivity = 1};
+    wall->temperature = wall->power = wall->absorptivity = wall->gas = NAN, wall->mesh.scale = 1;
     if (wall->shape == WALL_PLANE)
         wall->wall =
             (fibrad_wall){.kind = FIBRAD_WALL_PLANE, .plane = {shapes[k].number / 2, shapes[k].number % 2, NAN}};
@@ -235,8 +233,7 @@ static char cut_item(char **text) {
 }
 
 bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, char fault[WALL_FAULT]) {
-    char *item = *text, *number[3];
-    char stop = cut_item(text);
+    char *item = *text, *number[3], stop = cut_item(text);
     if (strchr(item, '=') || (find_key(item) && !wall_words_shape(item))) { /* as before 0.3.0, or behind a comma */
         snprintf(fault, WALL_FAULT,
                  "%.60s is not how a wall is written: zmin:at=VALUE:temperature=T:emissivity=E, zmax:open, "

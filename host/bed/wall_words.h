@@ -40,7 +40,9 @@ enum {
     WALL_OTHER_NAME = 1 << 9, /* the key `name` */
     WALL_SOLIDS = 1 << 10,
     WALL_SCALE = 1 << 11,
-    WALL_SIDES = 7 << 12,     /* one bit for each of auto, normals, both */
+    WALL_SIDES = 7 << 12, /* one bit for each of auto, normals, both */
+    WALL_CONVECTION = 1 << 16,
+    WALL_GAS = 1 << 17,
     WALL_NAMES_TOO = 1 << 15, /* no key: the shape may be WALL_NAMED */
     WALL_GEOMETRY = WALL_AT | WALL_OPEN | WALL_OTHER_NAME | WALL_SOLIDS | WALL_SCALE | WALL_SIDES,
     WALL_HEAT = WALL_TEMPERATURE | WALL_TEMPERATURES | WALL_POWER | WALL_INSULATED /* a wall has one of these */
@@ -60,6 +62,8 @@ struct wall_words {
     double emissivity;            /* 0 to 1; 1 if not given */
     double absorptivity;          /* 0 to 1; NaN: not given */
     double capacity;              /* [J/K] 0: not given */
+    double convection;            /* heat transfer coefficient to the gas [W/(m2 K)] 0: not given */
+    double gas;                   /* temperature of that gas; NaN: not given */
 };
 
 /* Room for a sentence that says what is wrong. */

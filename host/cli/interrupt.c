@@ -1,5 +1,4 @@
 /* interrupt.c - Ctrl-C and kill end the program cleanly. SPDX-License-Identifier: MIT */
-#include "cli/interrupt.h"
 
 #include <signal.h>
 #include <stddef.h>

@@ -1,6 +1,5 @@
 /* memory.c - checks, before the work begins, whether memory or disk suffice; arrays that grow.
  * SPDX-License-Identifier: MIT */
-#include "cli/memory.h"
 
 #include <math.h>
 #include <stdio.h>

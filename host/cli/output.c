@@ -10,7 +10,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 
 /* Joins the first `length` characters of `before` and all of `after`. False: the path is too long. */

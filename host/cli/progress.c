@@ -5,7 +5,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/interrupt.h"
+#include "cli/message.h"
 
 double progress_clock(void) {
     struct timespec now;
@@ -15,8 +15,7 @@ double progress_clock(void) {
 
 static void draw_bar(const struct progress *progress, uint64_t done, double now) {
     enum { WIDTH = 30 };
-    const double passed = now - progress->begun;
-    const double rate = passed > 0 ? (double)done / passed : 0;
+    const double passed = now - progress->begun, rate = passed > 0 ? (double)done / passed : 0;
     if (progress->total == 0) {
         fprintf(stderr, "\r%llu %s, %.0f/s ", (unsigned long long)done, progress->what, rate);
         fflush(stderr);
@@ -37,12 +36,8 @@ int progress_stage(void *context, const char *stage, uint64_t done, uint64_t tot
     const double now = progress_clock();
     if (done == 0) {
         progress_stop(progress);
-        *progress = (struct progress){.quiet = progress->quiet,
-                                      .on = !progress->quiet && isatty(STDERR_FILENO),
-                                      .what = stage,
-                                      .total = total,
-                                      .begun = now,
-                                      .shown = now};
+        progress->on = !progress->quiet && isatty(STDERR_FILENO);
+        progress->what = stage, progress->total = total, progress->begun = progress->shown = now;
     }
     if (total > 0 && done == total) progress_stop(progress);
     if (progress->on && now - progress->shown >= 0.1) {

@@ -58,9 +58,8 @@ static const struct option factors_table[] = {
     {OPTION_EMISSIVITY(struct factors_request, emissivity)},
     {OPTION_WALL},
     {0, "error", "E",
-     "error allowed in every row, estimated, 1e-7 to 1; directions and rays are added until it "
-     "is met; exchange factors "
-     "from 1e-5 on [none]",
+     "error allowed in every row, estimated, 1e-7 to 1; directions and rays are added until it is met; exchange "
+     "factors from 1e-5 on [none]",
      TO_NUMBER(struct factors_request, error, 1e-7, 1)},
     {0, "method", "NAME", "beam (parallel beams), cast (quasi-random rays) or mc (random rays) [beam]",
      TO_FUNCTION(take_method, struct factors_request, method)},
@@ -74,8 +73,7 @@ static const struct option factors_table[] = {
      TO_NUMBER(struct factors_request, options.drop, 0, 1)},
     {OPTION_SOLID_CONDUCTIVITY(struct factors_request, solid)},
     {0, "temperature", "T",
-     "mean temperatures of the spheres, for --solid-conductivity; a number, or TYPE:T,..., or a "
-     "column of the file",
+     "mean temperatures of the spheres, for --solid-conductivity; a number, or TYPE:T,..., or a column of the file",
      TO_FUNCTION(temperature_option, struct factors_request, temperature)},
     OPTIONS_INPUT,
     {OPTION_BED_OUTPUT("write the matrix (.csv .mtx .npz .json, - for standard output) or the "
@@ -338,11 +336,8 @@ static int write_matrix(struct factors_request *request, struct bed *bed) {
     int status = bed_options_make(&request->bed, bed, &request->walls, &made);
     if (!status) status = bed_options_factors(&request->bed, bed, &request->walls, made, &request->options, &factors);
     if (!status && request->bed.wall_vtp && !request->emissivity.given) status = find_views(request, bed, made, &views);
-    struct contents what = {.factors = factors,
-                            .wanted = request->options.wanted,
-                            .walls = &request->walls,
-                            .grey = request->options.exchange,
-                            .of_sides = &views};
+    struct contents what = {.factors = factors, .walls = &request->walls, .of_sides = &views};
+    what.wanted = request->options.wanted, what.grey = request->options.exchange;
     if (!status) status = bed_options_write(&request->bed, bed, &what);
     if (!status && request->bed.outputs.picture)
         status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);

@@ -34,6 +34,7 @@ static const struct option heat_table[] = {
      TO_NUMBER(struct heat, error, 1e-5, 1)},
     {OPTION_SOLID_CONDUCTIVITY(struct heat, solid)},
     OPTIONS_CONTACTS(struct heat),
+    OPTIONS_FILM(struct heat),
     OPTIONS_LIGHT(struct heat),
     OPTIONS_TIME(struct heat),
     OPTIONS_INPUT,
@@ -57,8 +58,7 @@ static const struct option heat_table[] = {
      TO_FUNCTION(option_points, struct heat, config.points)},
     {0, "wall-rays", "N",
      "least number of rays from all walls, up to 2^30; errors of triangles fall as N^-0.5 [" TEXT_OF(
-         FIBRAD_WALL_RAYS_DEFAULT) ", more with many "
-                                   "beams or patches, or insulated walls]",
+         FIBRAD_WALL_RAYS_DEFAULT) ", more with many beams or patches, or insulated walls]",
      TO_COUNT(struct heat, config.wall_rays, 1, FIBRAD_WALL_RAYS_MAX)},
     {OPTION_WALL_VTP},
     OPTIONS_INPUT_RARE,
@@ -85,7 +85,7 @@ static int heat_help(void) {
             "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
             "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
             "absorb.\n",
-            LIGHT_MORE, CONTACTS_MORE,
+            LIGHT_MORE, CONTACTS_MORE, FILM_MORE,
             "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
             "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
             "the temperature of a wall (zmin:temperature=@TABLE) or of the surroundings. The .csv then has the time "
@@ -135,6 +135,7 @@ static int check_heat(struct heat *h) {
     status = contacts_check(&h->contacts, &h->options, h->solid.given);
     if (!status) status = time_check(&h->time, &h->options);
     if (!status) status = light_check(&h->light, &h->options, &h->emissivities);
+    if (!status) status = film_check(&h->film, &h->options, h->given.zero, h->given.timed);
     return status ? status : given_check(&h->given, &h->options);
 }
 
@@ -145,7 +146,6 @@ static int heat_once(struct heat *h) {
     if (!status) status = heat_write(h, h->bed, &what);
     if (!status && h->options.outputs.picture)
         status = plot_heat(&h->options.picture, h->options.name, &what, &h->options.slice);
-    if (!status) status = light_profile(h);
     if (!status) heat_report(h);
     return status;
 }
@@ -159,7 +159,8 @@ static int heat_frame(void *heat, struct bed *bed) {
 }
 
 int command_heat(int argc, char **argv) {
-    struct heat heat = {.options.walls.keys = WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY};
+    struct heat heat = {.options.walls.keys =
+                            WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CONVECTION | WALL_GAS};
     int status = options_read("heat", heat_table, argc, argv, &heat);
     if (!status) status = check_heat(&heat);
     const int ended = bed_options_end(&heat.options, status, heat_help, heat_frame, &heat);
@@ -168,5 +169,6 @@ int command_heat(int argc, char **argv) {
     quantity_free(&heat.contacts.conductivity);
     curve_free(&heat.contacts.gas_curve);
     curve_free(&heat.given.ambient_curve);
+    curve_free(&heat.film.gas_curve);
     return ended;
 }

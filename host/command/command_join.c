@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "command/commands.h"
@@ -91,14 +90,8 @@ static int join_scene(const struct joined *joined, fibrad_scene **scene, void **
         for (uint32_t c = 0; c < 3; ++c) corner[k][c] = c;
         front[k] = k;
     }
-    const struct fibrad_triangles triangles = {.x = &vertex[0][0],
-                                               .y = &vertex[0][1],
-                                               .z = &vertex[0][2],
-                                               .stride = 3,
-                                               .vertices = 3,
-                                               .corner = &corner[0][0],
-                                               .front = front,
-                                               .n = walls};
+    struct fibrad_triangles triangles = {.x = vertex[0], .y = vertex[0] + 1, .z = vertex[0] + 2, .stride = 3};
+    triangles.vertices = 3, triangles.corner = corner[0], triangles.front = front, triangles.n = walls;
     const fibrad_scene_config config = {.wall = wall, .walls = walls, .triangles = walls ? &triangles : NULL};
     fibrad_fault fault = {joined->n, joined->n, UINT32_MAX, 0, 0};
     const int status = fibrad_heap_scene(scene, block, &config, &spheres, &fault);
@@ -156,25 +149,15 @@ static int join_write(struct join_request *request, const struct joined *joined,
     for (size_t b = 0; b < FIBRAD_WALLS_MAX; ++b) unbounded[b] = INFINITY;
     for (size_t k = 0; k < 3 * n; ++k) x[k % 3 * n + k / 3] = joined->x[k];
     const struct array ids = {"ids.npy", "u8", joined->id, n, 0};
-    const struct bed bed = {.n = joined->n,
-                            .ids = !request->positions,
-                            .x = x,
-                            .y = x + n,
-                            .z = x + 2 * n,
-                            .r = joined->radius,
-                            .id = (int64_t *)joined->id,
-                            .frame = (int64_t)joined->step, /* the number for a * in OUT */
-                            .timestep = (int64_t)joined->step};
+    struct bed bed = {.n = joined->n, .ids = !request->positions, .id = (int64_t *)joined->id};
+    bed.x = x, bed.y = x + n, bed.z = x + 2 * n, bed.r = joined->radius;
+    bed.frame = bed.timestep = (int64_t)joined->step; /* the frame is the number for a * in OUT */
     const struct walls walls = {.count = joined->walls};
     const fibrad_exchange_rule grey = {.emissivity = joined->emissivity, .wall_emissivity = unbounded};
     fibrad_bed_matrix with_areas = *factors;
     with_areas.wall_area = unbounded; /* not known; INFINITY leaves out the rows of walls */
-    const struct contents what = {.bed = &bed,
-                                  .factors = &with_areas,
-                                  .walls = &walls,
-                                  .grey = joined->emissive ? &grey : NULL,
-                                  .array = &ids,
-                                  .arrays = 1};
+    struct contents what = {.bed = &bed, .factors = &with_areas, .walls = &walls, .array = &ids, .arrays = 1};
+    if (joined->emissive) what.grey = &grey;
     const int status = outputs_write(&request->outputs, &what);
     if (!status) join_report(request, joined, &what);
     return status;

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "bed/bed_scene.h"
 #include "cli/message.h"
 
 #define ROUNDING 1e-12 /* of flows, over the sum of their magnitudes */

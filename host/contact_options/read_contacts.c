@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "cli/targets.h"
 #include "contact_options/contact_option.h"

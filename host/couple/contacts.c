@@ -77,10 +77,8 @@ static int gather_particles(fibrad_insitu_build *b, const fibrad_insitu_contacts
 /* Finds the conductances of all contacts of the gathered particles. *conductor: [*count], in order; to be freed. */
 static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts, double gas_reach,
                            struct conductor **conductor, uint32_t *count) {
-    const fibrad_contact_rule rule = {.spots = contacts->hertz ? FIBRAD_SPOTS_HERTZ : FIBRAD_SPOTS_LENS,
-                                      .scale = contacts->scale,
-                                      .gas_reach = gas_reach,
-                                      .gas_least = contacts->gas_least};
+    fibrad_contact_rule rule = {.spots = contacts->hertz ? FIBRAD_SPOTS_HERTZ : FIBRAD_SPOTS_LENS};
+    rule.scale = contacts->scale, rule.gas_reach = gas_reach, rule.gas_least = contacts->gas_least;
     const fibrad_scene_config config = {
         .wall = b->bed->wall, .walls = b->bed->walls, .period = {b->period[0], b->period[1], b->period[2]}};
     const fibrad_particle *p = b->to->particle.at;

@@ -5,10 +5,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "couple/ranks/block.h"
-#include "couple/ranks/collective.h"
+#include "couple/ranks/ranks.h"
 #include "couple/fibrad_couple.h"
-#include "couple/ranks/strays.h"
 #include "fibrad_mesh.h"
 #include "simple/team.h"
 

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/coarse_map.h"
 
 #define CUTOFF_RADII 8    /* least default cutoff: the largest diameter plus this many mean radii */
 #define CUTOFF_COUNT 1e5  /* particles in a cube that may be sent for the default cutoff, see below */
@@ -78,11 +77,8 @@ static int check_bed(fibrad_insitu_build *b) {
     }
     for (uint32_t k = 0; k < bed->walls; ++k)
         if (bed->wall[k].kind != FIBRAD_WALL_MESH) wall[walls++] = bed->wall[k];
-    const fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]},
-                                        .wall = wall,
-                                        .walls = walls,
-                                        .opening = b->opening,
-                                        .openings = bed->openings};
+    fibrad_scene_config config = {.period = {b->period[0], b->period[1], b->period[2]}, .wall = wall, .walls = walls};
+    config.opening = b->opening, config.openings = bed->openings;
     const int status = fibrad_scene_init(&empty, block, sizeof block, &config, &(fibrad_spheres){0}, NULL);
     if (status == FIBRAD_E_ENDLESS) return fibrad_refuse(message, status, "%s", fibrad_status_text(status));
     if (status) return refuse_walls(b);
@@ -115,10 +111,8 @@ static int take_particles(fibrad_insitu_build *b) {
     if (fibrad_block_fit(&b->to->particle, bed->n, sizeof(fibrad_particle))) return FIBRAD_E_MEMORY;
     fibrad_particle *particle = b->to->particle.at;
     for (size_t i = 0; i < bed->n; ++i) {
-        fibrad_particle p = {.id = bed->id[i],
-                             .radius = bed->radius[i],
-                             .emissivity = bed->emissivity[i],
-                             .conductivity = bed->conductivity ? bed->conductivity[i] : INFINITY};
+        fibrad_particle p = {.id = bed->id[i], .radius = bed->radius[i], .emissivity = bed->emissivity[i]};
+        p.conductivity = bed->conductivity ? bed->conductivity[i] : INFINITY;
         p.node = fibrad_node_emissivity(p.emissivity, p.conductivity);
         for (int axis = 0; axis < 3; ++axis) {
             const double x = bed->x[3 * i + (size_t)axis], period = b->period[axis];

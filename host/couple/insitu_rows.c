@@ -22,14 +22,11 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     for (size_t i = 0; i < n && b->to->conducts; ++i)
         emissivity[n + i] = p[i].conductivity, emissivity[2 * n + i] = p[i].node;
     fibrad_scene_config config = {0}; /* no rows: an empty scene */
-    if (n || !id)
-        config = (fibrad_scene_config){.wall = b->bed->wall,
-                                       .walls = b->bed->walls,
-                                       .opening = b->opening,
-                                       .openings = b->openings,
-                                       .occupancy = marked ? &b->map : NULL,
-                                       .triangles = &triangles};
-    if ((n || !id) && !images) memcpy(config.period, b->period, sizeof config.period);
+    if (n || !id) {
+        config = (fibrad_scene_config){.wall = b->bed->wall, .walls = b->bed->walls, .opening = b->opening};
+        config.openings = b->openings, config.occupancy = marked ? &b->map : NULL, config.triangles = &triangles;
+        if (!images) memcpy(config.period, b->period, sizeof config.period);
+    }
     const fibrad_spheres spheres = fibrad_particle_spheres(p, n, id);
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);

@@ -171,13 +171,9 @@ int fibrad_insitu_powers(fibrad_insitu *s, const fibrad_insitu_state *state, dou
     fibrad_link_forward(set->present, value, 1);
     for (size_t i = 0; i < set->own; ++i) emission[i] = sigma * fourth(home[i]);
 
-    fibrad_flow flow = {.weight = set->weight.at,
-                        .emission = emission,
-                        .wall_emission = set->wall_emission,
-                        .surroundings_emission = set->surroundings_emission,
-                        .power = set->power.at,
-                        .wall_power = of_wall,
-                        .made = set->changed ? set->made.at : NULL};
+    fibrad_flow flow = {.weight = set->weight.at, .emission = emission, .wall_emission = set->wall_emission};
+    flow.surroundings_emission = set->surroundings_emission, flow.power = set->power.at, flow.wall_power = of_wall;
+    flow.made = set->changed ? set->made.at : NULL;
     if (set->conducts) {
         status = fibrad_agree(s->comm, solve_nodes(s, &flow), NULL);
         if (status == FIBRAD_E_UNSOLVABLE)

@@ -213,11 +213,8 @@ static int make_sources(struct sources *t) {
     status = fibrad_agree(b->s->comm, status, b->s->message);
     if (status) return status;
     const fibrad_exchange_rule rule = fibrad_insitu_rule(b, t->n);
-    t->rule = (fibrad_wall_rule){.emissivity = rule.emissivity,
-                                 .wall_emissivity = rule.wall_emissivity,
-                                 .node_emissivity = rule.node_emissivity,
-                                 .conductivity = rule.conductivity,
-                                 .seed = rule.seed};
+    t->rule = (fibrad_wall_rule){.emissivity = rule.emissivity, .wall_emissivity = rule.wall_emissivity};
+    t->rule.node_emissivity = rule.node_emissivity, t->rule.conductivity = rule.conductivity, t->rule.seed = rule.seed;
     list_sources(t);
     if (!t->count) return FIBRAD_OK;
     count_paths(t);

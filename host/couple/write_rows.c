@@ -145,14 +145,9 @@ static int write_draft(fibrad_insitu *s, const char *name) {
     int status = open_arrays(set, entries, &a);
     if (!status) status = gather_rows(s, &a);
     if (!status) {
-        fibrad_rows_head head = {.rank = (uint64_t)s->rank,
-                                 .ranks = (uint64_t)s->ranks,
-                                 .step = set->facts.step,
-                                 .rows = set->own,
-                                 .entries = a.start[set->own],
-                                 .walls = set->walls,
-                                 .emissive = (uint64_t)set->emissive,
-                                 .cutoff = set->facts.cutoff};
+        fibrad_rows_head head = {.rank = (uint64_t)s->rank, .ranks = (uint64_t)s->ranks, .step = set->facts.step};
+        head.rows = set->own, head.entries = a.start[set->own], head.walls = set->walls;
+        head.emissive = (uint64_t)set->emissive, head.cutoff = set->facts.cutoff;
         memcpy(head.magic, FIBRAD_ROWS_MAGIC, sizeof head.magic);
         if (!write_file(name, &head, &a)) status = fibrad_refuse(s->message, FIBRAD_E_FILE, "cannot write %s", name);
     }

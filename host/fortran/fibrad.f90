@@ -37,7 +37,8 @@ module fibrad
         type(c_ptr) :: side_temperature = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr, &
             absorbed = c_null_ptr, contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0
-        type(c_ptr) :: contact_places = c_null_ptr
+        type(c_ptr) :: film = c_null_ptr, gas = c_null_ptr, wall_film = c_null_ptr, wall_gas = c_null_ptr, &
+            contact_places = c_null_ptr
     end type fibrad_heat_sources
 
     type, bind(C) :: fibrad_plane
@@ -197,8 +198,10 @@ module fibrad
         type(c_ptr) :: wall_absorbed = c_null_ptr
         real(c_double) :: surroundings_error = 0
         type(c_ptr) :: wall_area = c_null_ptr, least_temperature = c_null_ptr, largest_temperature = c_null_ptr, &
-            centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr, &
-            conducted = c_null_ptr, wall_conducted = c_null_ptr, contact_flow = c_null_ptr
+            centre_temperature = c_null_ptr, surface_error = c_null_ptr, centre_error = c_null_ptr
+        real(c_double) :: gas_power = 0, gas_error = 0
+        type(c_ptr) :: convected = c_null_ptr, wall_convected = c_null_ptr, conducted = c_null_ptr, &
+            wall_conducted = c_null_ptr, contact_flow = c_null_ptr
     end type fibrad_heat_result
 
     type, bind(C) :: fibrad_light
@@ -226,12 +229,13 @@ module fibrad
     type, bind(C) :: fibrad_span
         type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
         real(c_double) :: duration = 0
-        type(c_ptr) :: wall_temperature = c_null_ptr, surroundings = c_null_ptr
+        type(c_ptr) :: wall_temperature = c_null_ptr, surroundings = c_null_ptr, gas = c_null_ptr, &
+            wall_gas = c_null_ptr
         real(c_double) :: step = 0, tolerance = 0
         type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
         type(c_ptr) :: wall_energy = c_null_ptr
-        real(c_double) :: surroundings_energy = 0
+        real(c_double) :: surroundings_energy = 0, gas_power = 0, gas_energy = 0
         type(c_ptr) :: law = c_null_ptr
         type(c_funptr) :: observe = c_null_funptr
         type(c_ptr) :: context = c_null_ptr
@@ -327,6 +331,12 @@ module fibrad
             type(c_ptr), intent(out) :: matrix
             integer(c_int) :: fibrad_view_factors
         end function fibrad_view_factors
+        function fibrad_bed_wall_area(bed, wall) bind(C)
+            import
+            type(c_ptr), value :: bed
+            integer(c_int32_t), value :: wall
+            real(c_double) :: fibrad_bed_wall_area
+        end function fibrad_bed_wall_area
         function fibrad_bed_wall_row(bed, wall, rule, tolerance, row) bind(C)
             import
             type(c_ptr), value :: bed

@@ -11,9 +11,8 @@
 #include <unistd.h>
 
 #include "bed/bed_scene.h"
-#include "cli/memory.h"
 #include "cli/message.h"
-#include "frames/beyond.h"
+#include "frames/warnings.h"
 #include "plot/gnuplot.h"
 
 int bed_radius_option(const char *text, void *radius) {
@@ -136,8 +135,7 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
-    if (options->slice.axis && (!picture || options->timed))
-        return message(STATUS_USAGE, "--slice is for pictures of a bed at one time, by --plot");
+    if (options->slice.axis && !picture) return message(STATUS_USAGE, "--slice needs --plot");
     if (options->timed && is_series(options))
         return message(STATUS_USAGE, "--until begins with one frame; choose it by --frame");
     int status = walls_settle(&options->walls);
@@ -167,20 +165,12 @@ static int complete_bed(struct bed_options *options, struct bed *bed) {
 
 static int run_file(struct bed_options *options, const char *path, struct bed *bed, bed_options_frame *frame,
                     void *request) {
-    const struct read_options read = {.frames = options->frames,
-                                      .positions = options->positions,
-                                      .periods_given = options->periodic,
-                                      .no_radius = options->radius.given,
-                                      .series = options->files > 1,
-                                      .keep = outputs_keep(&options->outputs),
-                                      .extra = options->column,
-                                      .unit = options->unit,
-                                      .some = options->some,
-                                      .name = options->columns_of_file.name,
-                                      .names = options->columns_of_file.names,
-                                      .rule = options->columns_of_file.rule,
-                                      .rules = options->columns_of_file.rules,
-                                      .extras = options->columns};
+    const struct column_options *columns = &options->columns_of_file;
+    struct read_options read = {.frames = options->frames, .positions = options->positions};
+    read.periods_given = options->periodic, read.no_radius = options->radius.given, read.series = options->files > 1;
+    read.extra = options->column, read.unit = options->unit, read.some = options->some, read.extras = options->columns;
+    read.name = columns->name, read.names = columns->names, read.rule = columns->rule, read.rules = columns->rules;
+    read.keep = outputs_keep(&options->outputs);
     struct reader *reader;
     bool more = true;
     options->name = options->warned.file = lines_name(path);

@@ -2,7 +2,7 @@
  *
  * Follow a ray from a sphere in its right place. The ray leaves each mesh that encloses the bed through the inner side,
  * once more often than it enters. It enters each other mesh as often as it leaves. */
-#include "frames/beyond.h"
+#include "frames/warnings.h"
 
 #include <math.h>
 

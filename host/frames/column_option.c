@@ -5,7 +5,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 
 /* Keeps a copy of a text. */

@@ -55,8 +55,7 @@ static void word_rows(const struct warned *warned, const struct bed *bed, const 
     const char *more = meshed ? "do triangles cut spheres? If not, more directions help" : "more directions help";
     if (w->code == FIBRAD_WARNING_OPEN_ROWS)
         WARN(0,
-             "rows of walls are not closed: their sums are off by %.2g, because they contradict the "
-             "rows of spheres%s",
+             "rows of walls are not closed: their sums are off by %.2g, because they contradict the rows of spheres%s",
              w->value, meshed ? "; do triangles cut spheres?" : "");
     if (w->code == FIBRAD_WARNING_APART)
         WARN(0, "rows of walls and of spheres disagreed by %.2g before they were closed; %s", w->value, more);
@@ -72,9 +71,7 @@ static void word_places(const struct warned *warned, const struct bed *bed, cons
     char place[2][BED_LINE_TEXT];
     const char *wall = w->wall > 0 ? wall_name(walls, w->wall - 1) : "";
     if (w->code == FIBRAD_WARNING_OVERLAP)
-        WARN(0,
-             "sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by "
-             "about %.1g",
+        WARN(0, "sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by about %.1g",
              (long long)bed_name(bed, w->first), bed_line_text(bed, w->first, place[0]),
              (long long)bed_name(bed, w->second), bed_line_text(bed, w->second, place[1]), w->value, w->other);
     if (w->code == FIBRAD_WARNING_CUT)
@@ -88,9 +85,7 @@ static void word_places(const struct warned *warned, const struct bed *bed, cons
              "mesh:FILE:scale=%g scales the mesh",
              wall, w->value, w->other, w->value > w->other ? 1e-3 : 1e3);
     if (w->code == FIBRAD_WARNING_MESH_PLACE)
-        WARN(0,
-             "the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same "
-             "place and unit?",
+        WARN(0, "the wall %s lies from %g to %g along %c, the bed from %g to %g; are both in the same place and unit?",
              wall, w->value, w->other, 'x' + (int)w->first, bed_reach(bed, (int)w->first, false),
              bed_reach(bed, (int)w->first, true));
 }
@@ -148,9 +143,7 @@ void warn_frame(struct warned *warned, const struct bed *bed) {
     const bool before = warned->frames > 0;
     if (before && warned->ids != bed->ids &&
         is_new(warned, OTHER_NAMES)) /* nothing in the output would tell ids from positions */
-        WARN(0,
-             "spheres are named by %s, but those of the frames before by %s; --positions names all by "
-             "positions",
+        WARN(0, "spheres are named by %s, but those of the frames before by %s; --positions names all by positions",
              bed->ids ? "ids" : "positions", warned->ids ? "ids" : "positions");
     if (before && bed->timestep >= 0 && bed->timestep < warned->timestep && is_new(warned, OTHER_ORDER))
         WARN(0,
@@ -167,9 +160,7 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
         const double length = bed->high[axis] - bed->low[axis];
         if (!(period[axis] > 0 && length > 0) || fabs(period[axis] - length) <= PERIOD_OFF * length) continue;
         if (!is_new(warned, OTHER_PERIOD)) return;
-        WARN(0,
-             "--periodic is %g along %c, and the box of the file is %g long; is --periodic in the unit "
-             "of the file?",
+        WARN(0, "--periodic is %g along %c, and the box of the file is %g long; is --periodic in the unit of the file?",
              period[axis], 'x' + axis, length);
     }
 }

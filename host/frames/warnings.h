@@ -63,4 +63,8 @@ void warn_table(struct warned *warned, const char *option, const struct table_ex
 /* Warns if a table over times does not reach from 0 to `until` [s]. what: whose table. */
 void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until);
 
+/* Warns of the first sphere that lies wholly beyond a closed mesh with a wall on one side only: such a sphere is there
+ * by mistake. Spheres that a mesh cuts are normal. made: the bed in the library. file: its name. */
+void warn_beyond(const fibrad_bed *made, const struct bed *bed, const struct walls *walls, const char *file);
+
 #endif

@@ -3,9 +3,178 @@
 #ifndef HEAT_H
 #define HEAT_H
 
+#include "frames/bed_options.h"
 #include "contact_options/contact_option.h"
-#include "heat/heat_given.h"
-#include "heat/light_option.h"
+
+/* ---- what is given of each sphere and wall: its temperature or its power ----------------------------------------- */
+
+/* Arguments of the options. Begin with zeroes. */
+struct given_options {
+    struct quantity temperature, power;
+    const char *ambient; /* NULL: not given */
+    double zero;         /* [K] 0 of the unit of temperature */
+    /* Temperatures change with time. Then those of the options are initial ones. Each sphere has a temperature and may
+     * have a power too. The temperatures of walls and surroundings may be tables over time, @TABLE. */
+    bool timed;
+    struct curve ambient_curve; /* n = 0: --ambient is a number */
+    double surroundings;        /* [K] their temperature, of a table that at 0 s; NaN: not given */
+};
+
+/* Temperatures of walls from tables, in the unit of the options: over time, or of each triangle. n = 0: the wall has
+ * none. */
+struct wall_tables {
+    struct curve curve[WALLS_MAX], column[WALLS_MAX];
+};
+
+/* Temperatures and powers of one bed. NaN: not given. */
+struct given {
+    double *temperature; /* [spheres] [K] */
+    double *power;       /* [spheres] [W] */
+    double wall_temperature[WALLS_MAX], wall_power[WALLS_MAX];
+    unsigned char insulated[WALLS_MAX];
+    struct wall_tables tables;
+    double *side_temperature; /* [2 triangles] [K] as in fibrad_heat_sources; NULL: no side has one of its own */
+};
+
+/* Takes the argument of --power into a quantity. Status 0 or STATUS_USAGE. */
+int given_power_option(const char *text, void *power);
+
+/* Checks the options when all have been read, asks `bed` for the columns they name, and finds options->surroundings.
+ * The caller frees options->ambient_curve. Status 0, STATUS_USAGE, or as curve_read. */
+int given_check(struct given_options *options, struct bed_options *bed);
+
+/* Finds the temperatures and powers of a bed and its walls. Call given_free also after an error. Status 0, STATUS_USAGE
+ * naming a wall, STATUS_MEMORY, or STATUS_INPUT naming the line of a sphere that has both a temperature and a power, or
+ * neither. */
+int given_values(const struct given_options *options, const struct bed *bed, const char *file,
+                 const struct walls *walls, struct given *given);
+void given_free(struct given *given);
+
+/* Refuses spheres and walls of emissivity 0 that have a power. Status 0, STATUS_USAGE naming a wall, or STATUS_INPUT
+ * naming the line of a sphere. */
+int given_reflectors(const struct given *given, const double *emissivity, const struct walls *walls,
+                     const double *wall_emissivity, const struct bed *bed, const char *file);
+
+/* Points `sources` to the arrays of a bed of n spheres. Divides powers by the unit of area of the library [m2]. */
+void given_heat_sources(struct given *given, uint32_t n, double square_metres, fibrad_heat_sources *sources);
+
+/* ---- light from outside that falls on a bed: options, what is absorbed, and the summary -------------------------- */
+
+enum { LIGHTS_MAX = 32 };
+
+/* Rows of the table of options, for a request with a field `light`: with braces, and without. */
+#define OPTIONS_LIGHT(request)                                                                                         \
+    {0, "irradiate", "LIGHT",                                                                                          \
+     "light from outside, DX,DY,DZ:FLUX; its direction, and its W/m2 across that direction [none]",                    \
+     TO_FUNCTION(irradiate_option, request, light)},                                                                   \
+    {                                                                                                                  \
+        0, "absorptivity", "A",                                                                                        \
+            "absorptivity of all spheres for that light; 0 to 1, or TYPE:A,..., or a column of the file [emissivity]", \
+            TO_FUNCTION(absorptivity_option, request, light.absorptivity)                                              \
+    }
+
+/* A paragraph of --help. */
+#define LIGHT_MORE                                                                                                     \
+    "--irradiate: several are allowed. LIGHT is DX,DY,DZ:FLUX and may go on with\n"                                    \
+    "  :half-angle=RAD        directions fill a cone; 5mrad and 0.3deg are angles, too; sun is 4.65mrad\n"             \
+    "  :disc=X,Y,Z,R          a beam through a disc of radius R at right angles to it, before the bed\n"               \
+    "  :box=X1,X2,Y1,Y2       a beam through a rectangle across z, at the lit end of the bed\n"                        \
+    "Lengths are in the unit of the file. Without disc or box the light falls on all that is open. Between\n"          \
+    "side walls the light needs an opening at the height H of their rim (zmax:open:at=H). A surface absorbs the\n"     \
+    "fraction --absorptivity of the light, is heated by it, and reflects the rest. q_W is the net power of\n"          \
+    "light and thermal radiation together. The .csv has two more columns: absorbed_first_W is what is\n"               \
+    "absorbed of light straight from outside, absorbed_W is all light that is absorbed. For the surroundings\n"        \
+    "they are the light that leaves without having met anything, and all light that leaves.\n"
+
+/* Arguments of the options. Begin with zeroes. */
+struct light_options {
+    fibrad_light light[LIGHTS_MAX]; /* [lights] lengths in the bed's unit, flux in W/m2 */
+    uint32_t lights;
+    struct quantity absorptivity;
+};
+
+/* What light does to a bed. */
+struct light_state {
+    const struct light_options *options;       /* NULL: there is no light */
+    double *absorptivity, of_walls[WALLS_MAX]; /* [spheres] */
+    double *absorbed, *first, *error;          /* [spheres], with `power` in one block */
+    double *power, wall_power[WALLS_MAX];      /* given powers and what is absorbed, for thermal radiation */
+    double wall[WALLS_MAX], wall_first[WALLS_MAX], wall_error[WALLS_MAX];
+    bool failed;                /* the library has refused the light, or its solution */
+    fibrad_light_result result; /* with these arrays; [W] when the bed is solved */
+};
+
+/* Functions of the rows above. Status 0 or STATUS_USAGE. */
+option_take irradiate_option, absorptivity_option;
+
+/* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
+int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);
+
+/* ---- convection: heat that spheres and walls exchange with gas of a given temperature -----------------------------
+ */
+
+/* Rows of a table of options, for a request with a field `film`: with braces, and without. */
+#define OPTIONS_FILM(request)                                                                                          \
+    {0, "convection", "H",                                                                                             \
+     "heat transfer coefficient of all spheres to the gas [W/(m2 K)]; a number, TYPE:H,..., or a column of the file "  \
+     "[no gas]",                                                                                                       \
+     TO_FUNCTION(convection_option, request, film.coefficient)},                                                       \
+    {                                                                                                                  \
+        0, "gas-temperature", "T",                                                                                     \
+            "temperature of this gas; a number, TYPE:T,..., a column of the file, or with --until @TABLE",             \
+            TO_FUNCTION(gas_temperature_option, request, film)                                                         \
+    }
+
+/* A paragraph of --help. */
+#define FILM_MORE                                                                                                      \
+    "--convection H: A sphere gains H times its surface times (gas temperature - T_K). Walls have :convection=H\n"     \
+    "and :gas=T; without :gas they have the gas of --gas-temperature, if that is one number or a table. Outputs\n"     \
+    "have q_convection_W, which is a part of q_W, and a line for the gas.\n"
+
+/* Arguments of the options. Begin with zeroes; free gas_curve and tables of quantities. */
+struct film_options {
+    struct quantity coefficient; /* [W/(m2 K)] */
+    struct quantity gas;         /* in the unit of temperatures */
+    struct curve gas_curve;      /* over time [s]; n = 0: none */
+    const char *gas_table;       /* its path; NULL: none */
+};
+
+option_take convection_option, gas_temperature_option;
+
+/* Films of one bed. */
+struct film_state {
+    bool any;
+    double *film, *gas, *end; /* [spheres] in the unit of the library; [K]; [K] at the end of a span of time */
+    double *convected;        /* [spheres] [W] */
+    double wall_film[WALLS_MAX], wall_gas[WALLS_MAX], wall_end[WALLS_MAX], wall[WALLS_MAX];
+    bool wall_follows[WALLS_MAX]; /* its gas is that of the table */
+    double per_watt;              /* film over W/K */
+};
+
+/* Whether the options ask for films. */
+bool film_given(const struct film_options *options, const struct wall_options *walls);
+
+/* Checks the options when all have been read. zero: of the unit of temperatures [K]. Status 0, STATUS_USAGE, or as
+ * curve_read. */
+int film_check(struct film_options *options, struct bed_options *bed, double zero, bool timed);
+
+/* Finds the films of a bed, whose unit of length is known, and points `sources` and `result` to them. Call film_free
+ * also after an error. Status 0, STATUS_USAGE, STATUS_INPUT or STATUS_MEMORY. */
+int film_begin(struct film_state *state, const struct film_options *options, const char *file, const struct bed *bed,
+               const fibrad_bed *made, const struct walls *walls, double zero, double per_watt,
+               fibrad_heat_sources *sources, fibrad_heat_result *result);
+void film_free(struct film_state *state);
+
+/* Sets the temperatures of a table: now, and at the end of a span. */
+void film_at(struct film_state *state, const struct film_options *options, uint32_t spheres, uint32_t walls,
+             double zero, double now, double end);
+
+/* Scales results to watts, and reports them. */
+void film_scale(struct film_state *state, uint32_t spheres, uint32_t walls, fibrad_heat_result *result);
+void film_report(const struct film_state *state, const struct film_options *options, const struct walls *walls,
+                 const fibrad_heat_result *result, struct report *report);
+
+/* ---- a run of `fibrad heat`: what the options say, the bed in hand, its heat problem and the result -------------- */
 
 #define SECONDS_MAX 1e15
 
@@ -39,6 +208,22 @@ option_take capacity_option, density_option, step_option;
 /* Checks the options when all have been read, and asks `bed` for the columns they name. Without --until the other
  * options are refused. Status 0 or STATUS_USAGE. */
 int time_check(struct time_options *time, struct bed_options *bed);
+
+/* Row of a table of options, for a request with a field `profile`, without braces. */
+#define OPTION_PROFILE(request)                                                                                        \
+    0, "profile", "AXIS[:BINS]:OUT",                                                                                   \
+        "write temperatures and powers against x, y, z, or r from the axis of a cylinder, to a .csv; a bin is one "    \
+        "mean diameter [none]",                                                                                        \
+        TO_FUNCTION(profile_option, request, profile)
+
+/* Its argument. Begin with zeroes. */
+struct profile {
+    char axis;        /* 'x', 'y', 'z' or 'r' */
+    uint32_t bins;    /* 0: one mean diameter each */
+    const char *path; /* NULL: no profile */
+};
+
+option_take profile_option;
 
 /* The emissivity of a bed's open face: what spheres and walls of one temperature send out through the open faces,
  * divided by what black faces would send out. */
@@ -81,7 +266,9 @@ struct heat {
     struct time_options time;
     struct light_options light;
     struct contact_options contacts;
+    struct film_options film;
     struct face face;
+    struct profile profile;
     struct quantity emissivities, solid;
     fibrad_heat_config config; /* directions 0: chosen by the emissivities of the bed */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
@@ -98,8 +285,10 @@ struct heat {
      * unit of sources.conductivity; NULL: spheres have one temperature each */
     double *conductivity, *conductivity_scaled;
     double per_watt;               /* sources.conductivity over conductivity */
+    const fibrad_wall *around;     /* the cylinder whose axis a profile along r is measured from; NULL: none */
     struct light_state lit;        /* light from outside; its options NULL: there is none */
     struct contact_state touching; /* what conducts between spheres; options NULL: nothing does */
+    struct film_state films;       /* convection */
     fibrad_heat_sources sources;   /* [K]; surroundings NaN: the bed is closed; powers in watts only in time */
 
     /* ---- its result ---- */
@@ -186,7 +375,11 @@ void light_add(struct heat *heat);
 /* Reports what is absorbed, reflected and transmitted. */
 void light_report(struct heat *heat);
 
-/* Writes the profile, if one was asked for. Status 0, STATUS_FILE or STATUS_MEMORY. */
-int light_profile(const struct heat *heat);
+/* profile.c: finds the axis of r. Status 0, or STATUS_USAGE if there is none. */
+int profile_begin(struct heat *heat);
+
+/* Writes the profile, if one was asked for: of what the outputs have. Status 0, STATUS_USAGE, STATUS_FILE or
+ * STATUS_MEMORY. */
+int profile_write(const struct heat *heat, const struct contents *what);
 
 #endif

@@ -70,7 +70,10 @@ static void warn_levels(struct heat *h) {
 
 /* Reads what is given of spheres and walls, and makes sure of the unit of length. */
 static int read_values(struct heat *h, struct bed *bed) {
-    const char *needed = h->solid.given ? SOLID_NEEDS : contacts_given(&h->contacts) ? CONTACTS_NEED : NULL;
+    const char *needed = h->solid.given                            ? SOLID_NEEDS
+                         : contacts_given(&h->contacts)            ? CONTACTS_NEED
+                         : film_given(&h->film, &h->options.walls) ? "--convection needs"
+                                                                   : NULL;
     struct walls opened;
     int status = bed_options_walls(&h->options, bed, &h->walls);
     if (!status) status = given_values(&h->given, bed, h->options.name, &h->walls, &h->values);
@@ -83,7 +86,8 @@ static int read_values(struct heat *h, struct bed *bed) {
     opened = h->walls;
     if (!status) status = face_begin(h, &opened);
     if (!status) status = light_begin(h);
-    if (!status && !h->given.timed && !contacts_given(&h->contacts)) /* contacts: by the library */
+    if (!status && !h->given.timed && !contacts_given(&h->contacts) &&
+        !film_given(&h->film, &h->options.walls)) /* joined: by the library */
         status = given_reflectors(&h->values, h->emissivity, &h->walls, h->wall_emissivity, bed, h->options.name);
     if (!status) status = bed_options_metres(&h->options, bed, needed);
     return status ? status : bed_options_make(&h->options, bed, &opened, &h->made);
@@ -109,6 +113,7 @@ int heat_begin(struct heat *h, struct bed *bed) {
     if (status) return status;
     warn_levels(h);
     status = make_arrays(h);
+    if (!status) status = profile_begin(h);
     if (!status) status = find_conductivities(h);
     if (!status) status = make_triangles(h);
     if (status) return status;
@@ -120,6 +125,9 @@ int heat_begin(struct heat *h, struct bed *bed) {
         contacts_begin(&h->touching, &h->contacts, &h->options, bed, h->made, &h->walls, &h->solid, 1 / unit, sources);
     contacts_result(&h->touching, &h->result);
     if (!status) join_insulated(h);
+    if (!status)
+        status = film_begin(&h->films, &h->film, h->options.name, bed, h->made, &h->walls, h->given.zero, 1 / unit,
+                            sources, &h->result);
     return status;
 }
 
@@ -134,6 +142,7 @@ void heat_end(struct heat *h) {
     free(h->emissivity);
     light_free(&h->lit);
     contacts_free(&h->touching);
+    film_free(&h->films);
     given_free(&h->values);
     free(h->conductivity);
     free(h->conductivity_scaled);
@@ -170,6 +179,7 @@ int heat_write(struct heat *h, const struct bed *bed, struct contents *what) {
     if (!what->sources) what->sources = &h->sources;
     what->light = h->lit.options ? &h->lit.result : NULL;
     what->of_sides = &h->triangles;
-    const int status = bed_options_write(&h->options, bed, what);
+    int status = bed_options_write(&h->options, bed, what);
+    if (!status) status = profile_write(h, what);
     return status ? status : contacts_write(&h->touching, bed, &h->walls);
 }

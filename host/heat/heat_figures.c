@@ -34,7 +34,7 @@ void heat_find_figures(struct heat *h) {
     const fibrad_heat_result *result = &h->result;
     struct heat_figures *f = &h->figures;
     const double sphere = 4 * M_PI * FIBRAD_STEFAN_BOLTZMANN * h->bed->metres * h->bed->metres;
-    double square = 0, squares = 0, throughput = 0, balance = result->surroundings_power;
+    double square = 0, squares = 0, throughput = 0, balance = result->surroundings_power + result->gas_power;
     f->largest = fabs(result->surroundings_power);
     for (uint32_t k = 0; k < h->walls.count; ++k) {
         balance += result->wall_power[k];
@@ -42,10 +42,11 @@ void heat_find_figures(struct heat *h) {
     }
     f->emitted = 0;
     for (uint32_t i = 0; i < h->bed->n; ++i) {
-        const double power = result->power[i], radiation = power - (result->conducted ? result->conducted[i] : 0);
+        const double power = result->power[i], not_radiated = (result->conducted ? result->conducted[i] : 0) +
+                                                              (result->convected ? result->convected[i] : 0);
         const double emissivity = h->emissivity[i], r = h->bed->r[i];
         const double emitted = emissivity > 0 ? sphere * r * r * emissivity * pow(result->temperature[i], 4) : 0;
-        const double through = fmax(emitted, emitted + radiation);
+        const double through = fmax(emitted, emitted + power - not_radiated);
         f->emitted += emitted;
         balance += power;
         square += power * power;
@@ -161,6 +162,7 @@ void heat_report(struct heat *h) {
     face_report(h);
     light_report(h);
     contacts_report(&h->touching, h->bed, &h->walls, report);
+    film_report(&h->films, &h->film, &h->walls, &h->result, report);
     if (h->conductivity) report_solid(h);
     report_value(report, "balance_of_emission", f->balance_of_emission, 2);
     report_value(report, "error_of_emission", f->throughput > 0 ? f->error / f->throughput : 0, 2);

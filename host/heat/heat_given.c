@@ -1,5 +1,5 @@
 /* heat_given.c - what is given of each sphere and wall: its temperature or its power. SPDX-License-Identifier: MIT */
-#include "heat/heat_given.h"
+#include "heat/heat.h"
 
 #include <gsl/gsl_math.h>
 #include <math.h>
@@ -144,12 +144,11 @@ static int given_sides(const struct walls *walls, double zero, struct given *giv
 static int leave_out(const char *option, const struct quantity *number, const double *others, uint32_t n,
                      double *values) {
     bool used = false;
-    for (uint32_t i = 0; i < n; ++i) {
+    for (uint32_t i = 0; i < n; ++i)
         if (isnan(others[i]))
             used = true;
         else
             values[i] = NAN;
-    }
     if (used) return STATUS_OK;
     return message(
         STATUS_USAGE,

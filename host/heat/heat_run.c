@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
 
@@ -63,6 +62,16 @@ static void scale_result(struct heat *h, double square_metres) {
     result->error_beams *= square_metres;
 }
 
+/* All powers add up to 0. So each errs by at most what all others err by together. */
+static void bound_by_balance(struct heat *h) {
+    fibrad_heat_result *result = &h->result;
+    double *of[WALLS_MAX + 1] = {&result->surroundings_error}, all = result->surroundings_error + result->gas_error;
+    for (uint32_t i = 0; i < h->bed->n; ++i) all += result->power_error[i];
+    for (uint32_t k = 0; k < h->walls.count; ++k) of[k + 1] = &result->wall_error[k], all += *of[k + 1];
+    for (uint32_t k = 0; k <= h->walls.count; ++k)
+        if (*of[k] > all / 2) *of[k] = fmax(all - *of[k], 0), k = h->walls.count; /* only one can be */
+}
+
 /* Refuses a problem that will not fit into memory. Source: fibrad_heat_size. */
 static int check_memory(const struct heat *h) {
     const fibrad_heat_config *config = &h->used;
@@ -110,11 +119,13 @@ int heat_solve(struct heat *h) {
     if (status == FIBRAD_E_UNSOLVABLE) return refuse_powers(h);
     status = bed_options_status(&h->options, h->bed, status, &fault);
     if (status) return status;
+    light_add(h);
+    bound_by_balance(h);
     heat_find_temperatures(h);
     warn_hot(&h->options.warned, h->figures.hottest);
-    light_add(h);
     scale_result(h, square_metres);
     contacts_scale(&h->touching, h->bed->n, h->walls.count);
+    film_scale(&h->films, h->bed->n, h->walls.count, &h->result);
     light_scale(h, square_metres);
     heat_find_figures(h);
     h->seconds = progress_clock() - begun;

@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "heat/heat.h"
-#include "plot/plot_time.h"
+#include "plot/plot_heat.h"
 
 enum { TIMES_MAX = 10000 };
 
@@ -59,6 +58,7 @@ struct time_run {
     double wall_energy[WALLS_MAX];                /* gained by walls during the last span [J] */
     double energy[WALLS_MAX];                     /* gained by walls since the beginning [J] */
     double surroundings_energy;                   /* gained by the surroundings since the beginning [J] */
+    double gas_energy;                            /* gained by the gas of films since the beginning [J] */
     uint64_t steps, refused, sweeps, corrections; /* sums over spans, as in fibrad_span */
     double error;                                 /* largest fibrad_span.error */
     struct time_point *point;                     /* [points] of the picture */
@@ -120,7 +120,8 @@ static int find_times(const struct heat *h, struct span_end **ends, size_t *coun
     int given = 0, status = o->times ? options_numbers("--times", o->times, TIMES_MAX, listed, &given) : STATUS_OK;
     if (status) return status;
     for (uint32_t k = 0; k < h->walls.count; ++k) room += h->values.tables.curve[k].n;
-    struct span_end *end = *ends = malloc((room + h->given.ambient_curve.n) * sizeof *end);
+    room += h->given.ambient_curve.n + h->film.gas_curve.n;
+    struct span_end *end = *ends = malloc(room * sizeof *end);
     if (!end) return message_memory();
     for (; n < every; ++n) end[n] = (struct span_end){o->every * (double)n, true};
     for (int k = 0; k < given; ++k) end[n++] = (struct span_end){listed[k], true};
@@ -129,8 +130,10 @@ static int find_times(const struct heat *h, struct span_end **ends, size_t *coun
             return message(STATUS_USAGE, "--times: %g is not above the time before, or not within 0 and %g s",
                            end[k].time, o->until);
     end[n++] = (struct span_end){o->until, !o->times};
-    for (uint32_t k = 0; k <= h->walls.count; ++k) {
-        const struct curve *curve = k < h->walls.count ? &h->values.tables.curve[k] : &h->given.ambient_curve;
+    for (uint32_t k = 0; k < h->walls.count + 2; ++k) {
+        const struct curve *curve = k < h->walls.count    ? &h->values.tables.curve[k]
+                                    : k == h->walls.count ? &h->given.ambient_curve
+                                                          : &h->film.gas_curve;
         for (size_t p = 0; p < curve->n; ++p)
             if (curve->x[p] > 0 && curve->x[p] < o->until) end[n++] = (struct span_end){curve->x[p], false};
     }
@@ -172,7 +175,7 @@ static fibrad_heat_config choose_beams(struct time_run *m) {
     struct heat *h = m->heat;
     const struct contact_options *contacts = h->touching.options;
     const bool bends = contacts && (contacts->gas_curve.n > 0 || quantity_curves(&contacts->conductivity));
-    bool alone = h->conductivity || contacts;
+    bool alone = h->conductivity || contacts || h->films.any;
     fibrad_heat_config config = h->config;
     if (quantity_curves(&h->emissivities) || quantity_curves(&h->solid) || bends) {
         m->law = (fibrad_law){.follow = heat_follow, .context = h};
@@ -230,6 +233,7 @@ static int show_triangles(struct time_run *m) {
 static int solve_state(struct time_run *m, fibrad_heat_sources *shown) {
     struct heat *h = m->heat;
     *shown = m->sources;
+    film_at(&h->films, &h->film, m->bed.n, h->walls.count, h->given.zero, m->now, m->now);
     shown->temperature = m->span.temperature;
     heat_follow(h, shown->temperature, m->wall, h->emissivity, NULL);
     heat_excess_of(h, shown->temperature, m->wall, m->excess);
@@ -263,6 +267,7 @@ static int advance(struct time_run *m, double time) {
     outside_at(m, time, wall, &surroundings);
     m->span.duration = time - m->now;
     m->span.wall_temperature = wall, m->span.surroundings = &surroundings;
+    film_at(&m->heat->films, &m->heat->film, m->bed.n, m->heat->walls.count, m->heat->given.zero, m->now, time);
     const int status = fibrad_bed_advance(m->heat->made, &m->sources, &m->span);
     warn_made(&m->heat->options.warned, m->heat->bed, &m->heat->walls, m->heat->made, m->heat->given.zero == 0);
     if (status) return library_status(m, status);
@@ -270,7 +275,7 @@ static int advance(struct time_run *m, double time) {
     m->corrections += m->span.corrections;
     m->error = fmax(m->error, m->span.error);
     for (uint32_t k = 0; k < m->heat->walls.count; ++k) m->energy[k] += m->wall_energy[k];
-    m->surroundings_energy += m->span.surroundings_energy;
+    m->surroundings_energy += m->span.surroundings_energy, m->gas_energy += m->span.gas_energy;
     memcpy(m->wall, wall, sizeof wall);
     m->sources.surroundings = surroundings;
     m->now = time;
@@ -308,7 +313,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
         stored += change, exchanged += fabs(change);
         supplied += o->until * m->sources.power[i];
     }
-    double balance = stored - supplied + m->surroundings_energy;
+    double balance = stored - supplied + m->surroundings_energy + m->gas_energy;
     for (uint32_t k = 0; k < h->walls.count; ++k) balance += m->energy[k];
     bed_options_report(&h->options, h->bed, &h->walls, &h->facts);
     report_value(report, "until_s", o->until, 9);
@@ -334,6 +339,7 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_value(report, "supplied_J", supplied, 6);
     report_value(report, "stored_J", stored, 6);
     if (h->given.ambient) report_value(report, "surroundings_J", m->surroundings_energy, 6);
+    if (h->films.any) report_value(report, "gas_J", m->gas_energy, 6);
     wall_values_report(&h->walls, m->energy, "_J", 6, report);
     light_report(h);
     contacts_report(&h->touching, h->bed, &h->walls, report);
@@ -367,6 +373,7 @@ static void warn_tables(const struct time_run *m) {
     heat_warn_excess(h, m->excess);
     for (uint32_t k = 0; k < h->walls.count; ++k)
         warn_times(warned, wall_name(&h->walls, k), &h->values.tables.curve[k], h->time.until);
+    warn_times(warned, "--gas-temperature", &h->film.gas_curve, h->time.until);
     warn_times(warned, "--ambient", &h->given.ambient_curve, h->time.until);
 }
 
@@ -379,13 +386,17 @@ static int run_bed(struct time_run *m, double *before) {
     if (status) return status;
     fibrad_bed_describe(h->made, &h->facts, NULL);
     status = absorb_light(m);
-    if (!status) status = light_profile(h);
     outside_at(m, 0, m->wall, &m->sources.surroundings);
     memcpy(before, m->span.temperature, h->bed->n * sizeof *before);
     if (!status) status = run_spans(m);
     progress_stop(&h->options.progress);
-    if (!status && h->options.outputs.picture)
-        status = plot_time(&h->options.picture, h->options.name, m->point, m->points);
+    if (!status && h->options.outputs.picture) {
+        memcpy(h->result.temperature, m->span.temperature, h->bed->n * sizeof *m->span.temperature);
+        memcpy(h->result.wall_temperature, m->wall, h->walls.count * sizeof *m->wall);
+        status =
+            plot_time(&h->options.picture, h->options.name, m->point, m->points,
+                      &(struct contents){.bed = h->bed, .walls = &h->walls, .result = &h->result}, &h->options.slice);
+    }
     if (!status) {
         warn_lag(m);
         warn_tables(m);
@@ -407,6 +418,10 @@ int heat_in_time(struct heat *h) {
     m.sources.temperature = now, m.sources.wall_temperature = m.wall;
     m.span = (fibrad_span){
         .temperature = now, .step = h->time.step, .wall_energy = m.wall_energy, .observe = note_point, .context = &m};
+    if (h->film.gas_curve.n > 0) {
+        m.span.gas = h->films.film ? h->films.end : NULL;
+        m.span.wall_gas = h->films.wall_end;
+    }
     for (uint32_t i = 0; i < n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;
     for (uint32_t k = 0; k < h->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;

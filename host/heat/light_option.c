@@ -1,5 +1,5 @@
 /* light_option.c - light from outside that falls on a bed. SPDX-License-Identifier: MIT */
-#include "heat/light_option.h"
+#include "heat/heat.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -96,26 +96,6 @@ int irradiate_option(const char *text, void *light_options) {
     return status;
 }
 
-int profile_option(const char *text, void *light_options) {
-    struct light_options *options = light_options;
-    const char *rest = text + 1;
-    if (!strchr("xyz", text[0]) || !text[0] || *rest != ':')
-        return message(STATUS_USAGE, "--profile: '%.60s' is not AXIS:OUT or AXIS:BINS:OUT", text);
-    options->axis = text[0];
-    const size_t digits = strspn(++rest, "0123456789");
-    if (digits > 0 && rest[digits] == ':') {
-        char number[24] = "";
-        strncat(number, rest, digits < 20 ? digits : 20);
-        const int status = options_count("--profile", number, 1, 100000, &options->bins);
-        if (status) return status;
-        rest += digits + 1;
-    }
-    if (options->profile) return message(STATUS_USAGE, "--profile is given twice");
-    options->profile = rest;
-    return output_ends(rest, ".csv") ? STATUS_OK
-                                     : message(STATUS_USAGE, "--profile: '%.60s' does not end in .csv", rest);
-}
-
 int absorptivity_option(const char *text, void *absorptivity) {
     return quantity_option("--absorptivity", text, 0, 1, absorptivity);
 }
@@ -123,7 +103,6 @@ int absorptivity_option(const char *text, void *absorptivity) {
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity) {
     const char *needs = options->absorptivity.given                   ? "--absorptivity"
                         : walls_keys(&bed->walls) & WALL_ABSORPTIVITY ? "--wall: absorptivity"
-                        : options->profile                            ? "--profile"
                                                                       : NULL;
     if (options->lights == 0) return needs ? message(STATUS_USAGE, "%s needs --irradiate", needs) : STATUS_OK;
     if (!options->absorptivity.given && quantity_curves(of_emissivity))

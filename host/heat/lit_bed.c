@@ -1,5 +1,5 @@
 /* lit_bed.c - what a bed absorbs of light from outside, and its profile along an axis. SPDX-License-Identifier: MIT */
-#include <math.h>
+#include <gsl/gsl_math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -53,16 +53,11 @@ int light_absorb(struct heat *h, double unit, fibrad_heat_sources *sources) {
     fibrad_light scaled[LIGHTS_MAX];
     if (!options) return FIBRAD_OK;
     for (uint32_t k = 0; k < options->lights; ++k) scaled[k] = options->light[k], scaled[k].flux *= unit;
-    fibrad_light_sources light = {.lights = options->lights,
-                                  .light = scaled,
-                                  .absorptivity = state->absorptivity,
-                                  .wall_absorptivity = state->of_walls};
-    state->result = (fibrad_light_result){.absorbed = state->absorbed,
-                                          .absorbed_first = state->first,
-                                          .absorbed_error = state->error,
-                                          .wall_absorbed = state->wall,
-                                          .wall_absorbed_first = state->wall_first,
-                                          .wall_absorbed_error = state->wall_error};
+    fibrad_light_sources light = {.lights = options->lights, .light = scaled, .absorptivity = state->absorptivity};
+    light.wall_absorptivity = state->of_walls;
+    state->result = (fibrad_light_result){.absorbed = state->absorbed, .wall_absorbed = state->wall};
+    state->result.absorbed_first = state->first, state->result.wall_absorbed_first = state->wall_first;
+    state->result.absorbed_error = state->error, state->result.wall_absorbed_error = state->wall_error;
     const int status = fibrad_bed_shine(h->made, &light, &state->result);
     state->failed = status;
     if (!status) add_absorbed(h, sources);
@@ -105,6 +100,40 @@ void light_scale(struct heat *h, double factor) {
     r->error_patches *= factor;
 }
 
+/* Adds the error of the absorbed light to that of a temperature that was found. conducts: what contacts and films
+ * conduct for each kelvin. */
+static void add_to_temperature(const struct heat *h, double area, double emissivity, double conducts, double light,
+                               double temperature, double *error) {
+    const double slope = 4 * h->sources.sigma * gsl_pow_3(temperature) * area * emissivity + conducts;
+    if (slope > 0) *error = hypot(*error, light / slope);
+}
+
+/* The same of all temperatures. */
+static void add_to_temperatures(struct heat *h) {
+    const fibrad_heat_sources *s = &h->sources;
+    const fibrad_heat_result *r = &h->result;
+    const struct light_state *state = &h->lit;
+    double *conducts = calloc(h->bed->n + WALLS_MAX, sizeof *conducts);
+    for (uint32_t i = 0; conducts && s->film && i < h->bed->n; ++i) conducts[i] = s->film[i];
+    for (uint32_t k = 0; conducts && s->wall_film && k < h->walls.count; ++k) conducts[h->bed->n + k] = s->wall_film[k];
+    for (uint32_t k = 0; conducts && k < s->contacts; ++k)
+        for (int end = 0; end < 2 && s->contact_first[k] != s->contact_second[k]; ++end)
+            conducts[end ? s->contact_second[k] : s->contact_first[k]] += s->conductance[k];
+    for (uint32_t i = 0; i < h->bed->n && conducts; ++i) {
+        double *const errors[] = {r->temperature_error, r->surface_error, r->centre_error};
+        const double area = 4 * M_PI * gsl_pow_2(h->bed->r[i]);
+        for (int k = 0; k < 3 && isnan(s->temperature[i]); ++k)
+            if (errors[k])
+                add_to_temperature(h, area, s->emissivity[i], conducts[i], state->error[i], r->temperature[i],
+                                   &errors[k][i]);
+    }
+    for (uint32_t k = 0; k < h->walls.count && conducts; ++k)
+        if (isnan(s->wall_temperature[k]) && !s->insulated[k])
+            add_to_temperature(h, r->wall_area[k], s->wall_emissivity[k], conducts[h->bed->n + k], state->wall_error[k],
+                               r->wall_temperature[k], &r->wall_temperature_error[k]);
+    free(conducts);
+}
+
 void light_add(struct heat *h) {
     const struct light_state *state = &h->lit;
     const fibrad_light_result *light = &state->result;
@@ -112,6 +141,7 @@ void light_add(struct heat *h) {
     fibrad_heat_result *result = &h->result;
     double square = 0;
     if (!state->options) return;
+    if (!h->given.timed) add_to_temperatures(h);
     for (uint32_t i = 0; i < spheres; ++i) {
         result->power[i] += state->absorbed[i];
         if (isnan(h->sources.temperature[i])) continue;
@@ -152,67 +182,4 @@ void light_report(struct heat *h) {
     report_measured(report, "reflected", light->reflected / all, light->error / all);
     report_value(report, "transmitted", light->transmitted / all, 6);
     report_value(report, "balance_of_light", (sum + light->reflected + light->transmitted) / all - 1, 2);
-}
-
-/* ---- profile --------------------------------------------------------------------------------------------------- */
-
-/* One bin: from `low` on, the spheres whose centres lie in it, and what these absorb [W]. */
-struct light_bin {
-    double low, first, absorbed;
-    uint32_t spheres;
-};
-
-struct light_bins {
-    struct light_bin *bin; /* [count] */
-    uint32_t count;
-    double width;
-};
-
-/* Divides the extent of the spheres along the axis into bins. If the number of bins is not given, a bin is one mean
- * diameter wide, and the last one may reach beyond the spheres. Status 0 or STATUS_MEMORY. */
-static int make_bins(const struct light_options *options, const struct bed *bed, struct light_bins *bins) {
-    const double *at = bed_centres(bed, options->axis - 'x');
-    double low = INFINITY, high = -INFINITY, diameter = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        low = fmin(low, at[i] - bed->r[i]), high = fmax(high, at[i] + bed->r[i]);
-        diameter += 2 * bed->r[i] / bed->n;
-    }
-    const double most = 1e6;
-    bins->count = options->bins > 0 ? options->bins : (uint32_t)fmin(ceil((high - low) / diameter * (1 - 1e-9)), most);
-    bins->width = options->bins > 0 ? (high - low) / options->bins : fmax(diameter, (high - low) / most);
-    bins->bin = calloc(bins->count, sizeof *bins->bin);
-    if (!bins->bin) return message_memory();
-    for (uint32_t k = 0; k < bins->count; ++k) bins->bin[k].low = low + k * bins->width;
-    return STATUS_OK;
-}
-
-static void fill_bins(const struct light_state *state, const struct bed *bed, struct light_bins *bins) {
-    const double *at = bed_centres(bed, state->options->axis - 'x');
-    for (uint32_t i = 0; i < bed->n; ++i) {
-        const double place = (at[i] - bins->bin[0].low) / bins->width;
-        struct light_bin *bin = &bins->bin[(uint32_t)fmin(place, bins->count - 1.)];
-        ++bin->spheres;
-        bin->first += state->first[i], bin->absorbed += state->absorbed[i];
-    }
-}
-
-int light_profile(const struct heat *h) {
-    const struct light_state *state = &h->lit;
-    const struct light_options *options = state->options;
-    const struct bed *bed = h->bed;
-    struct output output = {0};
-    struct light_bins bins = {0};
-    if (!options || !options->profile || bed->n == 0) return STATUS_OK;
-    int status = output_open(&output, options->profile);
-    if (!status) status = make_bins(options, bed, &bins);
-    if (!status) fill_bins(state, bed, &bins);
-    if (!status) {
-        fprintf(output.file, "%c_low,%c_high,spheres,absorbed_first_W,absorbed_W\n", options->axis, options->axis);
-        for (uint32_t k = 0; k < bins.count; ++k)
-            fprintf(output.file, "%.9g,%.9g,%u,%.9g,%.9g\n", bins.bin[k].low, bins.bin[k].low + bins.width,
-                    bins.bin[k].spheres, bins.bin[k].first, bins.bin[k].absorbed);
-        status = output_flush(&output);
-    }
-    free(bins.bin);
-    return output_close(&output, status);
 }

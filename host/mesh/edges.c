@@ -1,7 +1,6 @@
 /* edges.c - edges of triangles, and connected components with one winding. SPDX-License-Identifier: MIT */
 #include <stdlib.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 #include "mesh/welded.h"
 

@@ -44,11 +44,8 @@ static bool to_triangle(const struct surface *surface, uint32_t triangle, const 
         for (int axis = 0; axis < 3; ++axis) corner[k][axis] = surface_corner(surface, triangle, k)[axis] - p[axis];
     surface_normal(surface, triangle, normal);
     const double distance = nearest_on_triangle(corner, to, &inside), depth = inner(normal, corner[0]);
-    *found = (struct nearest){.square = distance * distance,
-                              .side = depth < 0   ? 1
-                                      : depth > 0 ? -1
-                                                  : 0,
-                              .edge = !inside};
+    *found = (struct nearest){.square = distance * distance, .side = depth < 0 ? 1 : depth > 0 ? -1 : 0};
+    found->edge = !inside;
     return inner(normal, normal) > 0;
 }
 

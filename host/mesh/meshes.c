@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/memory.h"
 #include "cli/message.h"
 
 bool mesh_name(const char *name) {
@@ -81,15 +80,8 @@ static int append(struct meshes *meshes) {
     memcpy(vertex + 3 * (size_t)all->vertices, s->vertex, s->vertices * sizeof *s->vertex);
     for (uint32_t t = 0; t < s->n; ++t)
         for (int k = 0; k < 3; ++k) corner[3 * ((size_t)all->n + t) + (size_t)k] = all->vertices + s->corner[t][k];
-    *all = (struct fibrad_triangles){.x = vertex,
-                                     .y = vertex + 1,
-                                     .z = vertex + 2,
-                                     .stride = 3,
-                                     .vertices = (uint32_t)vertices,
-                                     .corner = corner,
-                                     .front = meshes->front,
-                                     .back = meshes->back,
-                                     .n = (uint32_t)n};
+    *all = (struct fibrad_triangles){.x = vertex, .y = vertex + 1, .z = vertex + 2, .stride = 3, .corner = corner};
+    all->vertices = (uint32_t)vertices, all->n = (uint32_t)n, all->front = meshes->front, all->back = meshes->back;
     return STATUS_OK;
 }
 
@@ -98,12 +90,8 @@ int meshes_take(struct meshes *meshes, const struct mesh_file *file, const struc
     meshes->mesh = memory_grown(meshes->mesh, meshes->count, sizeof *meshes->mesh, &good);
     if (!good) return message_memory();
     struct mesh *mesh = &meshes->mesh[meshes->count++];
-    *mesh = (struct mesh){.file = strdup(file->path),
-                          .text = stl->text,
-                          .sides = file->sides,
-                          .wall = wall,
-                          .walls = file->solids ? stl->solids : 1,
-                          .first = meshes->triangles.n};
+    *mesh = (struct mesh){.file = strdup(file->path), .text = stl->text, .sides = file->sides, .wall = wall};
+    mesh->walls = file->solids ? stl->solids : 1, mesh->first = meshes->triangles.n;
     if (!mesh->file) return message_memory();
     if (mesh->walls > FIBRAD_WALLS_MAX - wall)
         return message_at(STATUS_USAGE, file->path, 0, "more than %d walls; without :solids the file is one wall",

@@ -1,6 +1,6 @@
 /* side_arrays.c - values of the sides of triangles, and arrays over triangles made of them.
  * SPDX-License-Identifier: MIT */
-#include "mesh/side_arrays.h"
+#include "mesh/meshes.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/memory.h"
+#include "cli/message.h"
 #include "fibrad_mesh.h"
 #include "text/read_lines.h"
 

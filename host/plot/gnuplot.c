@@ -8,7 +8,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 
 bool plot_ending(const char *path) { return output_ends(path, ".svg") || output_ends(path, ".png"); }

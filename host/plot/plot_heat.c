@@ -1,4 +1,4 @@
-/* plot_heat.c - a picture of temperatures and net powers, by gnuplot. SPDX-License-Identifier: MIT */
+/* plot_heat.c - pictures of temperatures and powers, also in time, by gnuplot. SPDX-License-Identifier: MIT */
 #include "plot/plot_heat.h"
 
 #include <math.h>
@@ -26,6 +26,14 @@ static bool varies(const double *value, uint32_t n) {
     return all.high - all.low > 1e-6 * fmax(fabs(all.low), fabs(all.high));
 }
 
+/* Begins a picture of two panels. */
+static void print_title(FILE *script, const struct output *output, const char *name) {
+    gnuplot_style(script, output->path, 1500, 700);
+    fputs("set multiplot layout 1,2 margins 0.075,0.89,0.14,0.84 spacing 0.16\nset label 1 '", script);
+    gnuplot_name(script, name);
+    fputs("' at screen 0.015,0.955 font ',19' tc '#111111' noenhanced\n", script);
+}
+
 static void print_head(FILE *script, const struct output *output, const char *name, const struct contents *what) {
     const struct extremes kelvins = extremes_of(what->result->temperature, what->bed->n);
     double net = 0, light = 0, conducted = 0;
@@ -33,13 +41,9 @@ static void print_head(FILE *script, const struct output *output, const char *na
     for (uint32_t i = 0; i < what->bed->n && what->result->conducted; ++i) conducted += what->result->conducted[i];
     for (uint32_t i = 0; i < what->bed->n && what->light; ++i) light += what->light->absorbed[i];
     const struct prefixed unit = unit_prefixed(fabs(net), "W"), unit_of_light = unit_prefixed(light, "W");
-    gnuplot_style(script, output->path, 1500, 700);
-    fputs("set multiplot layout 1,2 margins 0.075,0.89,0.14,0.84 spacing 0.16\nset label 1 '", script);
-    gnuplot_name(script, name);
-    fprintf(script,
-            "' at screen 0.015,0.955 font ',19' tc '#111111' noenhanced\n"
-            "set label 2 '%u spheres of %.5g to %.5g K %s %.4g %s",
-            what->bed->n, kelvins.low, kelvins.high, net >= 0 ? "gain" : "lose", fabs(net) / unit.scale, unit.name);
+    print_title(script, output, name);
+    fprintf(script, "set label 2 '%u spheres of %.5g to %.5g K %s %.4g %s", what->bed->n, kelvins.low, kelvins.high,
+            net >= 0 ? "gain" : "lose", fabs(net) / unit.scale, unit.name);
     if (what->result->conducted)
         fprintf(script, ": %.4g %s by radiation, %.4g %s by conduction",
                 (net >= 0 ? 1 : -1) * (net - conducted) / unit.scale, unit.name,
@@ -118,4 +122,42 @@ int plot_heat(const struct output *output, const char *name, const struct conten
     fputs("unset multiplot\n", gnuplot.script);
     const int drawn = gnuplot_end(&gnuplot);
     return status ? status : drawn;
+}
+
+/* Draws temperatures over time. */
+static void print_times(FILE *script, const struct time_point *point, size_t points) {
+    const struct prefixed unit = unit_seconds(point[points - 1].time);
+    fputs("$time << END\n", script);
+    for (size_t k = 0; k < points; ++k)
+        fprintf(script, "%.9g %.9g %.9g %.9g\n", point[k].time / unit.scale, point[k].mean, point[k].least,
+                point[k].most);
+    fprintf(script,
+            "END\n"
+            "set xlabel 'time [%s]'; set ylabel 'temperature [K]'; set grid; set key top right\n"
+            "set xrange [0:%.9g]\n"
+            "plot $time using 1:3:4 with filledcurves fc '#c8553d' fs transparent solid 0.25 noborder "
+            "title 'coldest to hottest', "
+            "'' using 1:3 with lines lw 1 lc '#c8553d' notitle, '' using 1:4 with lines lw 1 lc '#c8553d' notitle, "
+            "'' using 1:2 with lines lw 3 lc '#222222' title 'mean'\n",
+            unit.name, point[points - 1].time / unit.scale);
+}
+
+int plot_time(const struct output *output, const char *name, const struct time_point *point, size_t points,
+              const struct contents *what, const struct plot_plane *plane) {
+    const struct time_point *end = &point[points - 1];
+    const struct prefixed unit = unit_seconds(end->time);
+    struct gnuplot gnuplot;
+    struct plot_slice slice;
+    const int status = gnuplot_start(&gnuplot, output);
+    if (status) return status;
+    plot_slice_of(&slice, plane, what->bed, what->walls);
+    print_title(gnuplot.script, output, name);
+    fprintf(gnuplot.script,
+            "set label 2 '%u spheres of %.5g to %.5g K after %.4g %s' at screen 0.015,0.905 tc '#444444'\n",
+            what->bed->n, end->least, end->most, end->time / unit.scale, unit.name);
+    print_times(gnuplot.script, point, points);
+    fputs("set autoscale x; unset label 1; unset label 2\n", gnuplot.script);
+    print_panel(gnuplot.script, TEMPERATURE, &slice, what);
+    fputs("unset multiplot\n", gnuplot.script);
+    return gnuplot_end(&gnuplot);
 }

@@ -1,4 +1,4 @@
-/* plot_heat.h - a picture of temperatures and net powers, by gnuplot. SPDX-License-Identifier: MIT */
+/* plot_heat.h - pictures of temperatures and powers, also in time, by gnuplot. SPDX-License-Identifier: MIT */
 #ifndef PLOT_HEAT_H
 #define PLOT_HEAT_H
 
@@ -12,5 +12,16 @@
  * that of a signal. */
 int plot_heat(const struct output *output, const char *name, const struct contents *what,
               const struct plot_plane *plane);
+
+/* Temperatures of all spheres at a time. */
+struct time_point {
+    double time;              /* [s] */
+    double mean, least, most; /* temperatures [K] */
+};
+
+/* Draws mean, least and largest temperature over time, and a slice of the temperatures at the end, those of `what`.
+ * Status as plot_heat. */
+int plot_time(const struct output *output, const char *name, const struct time_point *point, size_t points,
+              const struct contents *what, const struct plot_plane *plane);
 
 #endif

@@ -113,8 +113,7 @@ static int read_header(struct source *source, int64_t *atoms, char *style, struc
     int status = lines_next(lines, &more);
     if (!status && more) read_comment(lines, style, bed);
     while (!status && !(status = lines_next(lines, &more)) && more) {
-        char word[WORD] = "";
-        char *comment = strchr(lines->text, '#');
+        char word[WORD] = "", *comment = strchr(lines->text, '#');
         if (comment) *comment++ = 0;
         sscanf(lines->text, "%39s", word);
         if (strcmp(word, "Atoms") == 0) {

@@ -14,7 +14,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/output.h"
 #include "couple/rows_file.h"
@@ -221,14 +220,9 @@ static int take_sphere(const struct rank_file *from, uint64_t k, uint32_t i, str
 static int take_row(const struct rank_file *from, uint64_t k, uint32_t *col, struct joined *joined) {
     const uint64_t start = from->start[k], length = from->start[k + 1] - start;
     if (length > joined->n) return message_at(STATUS_INPUT, from->path, 0, "the starts of its rows are damaged");
-    const fibrad_row row = {.col = col,
-                            .f = from->f + start,
-                            .wall = from->wall + k * from->head->walls,
-                            .sphere = sphere_of(joined, from->id[k]),
-                            .length = (uint32_t)length,
-                            .escaped = from->escaped[k],
-                            .beyond = from->beyond[k],
-                            .error = from->error[k]};
+    fibrad_row row = {.col = col, .f = from->f + start, .wall = from->wall + k * from->head->walls};
+    row.sphere = sphere_of(joined, from->id[k]), row.length = (uint32_t)length;
+    row.escaped = from->escaped[k], row.beyond = from->beyond[k], row.error = from->error[k];
     const int status = take_sphere(from, k, row.sphere, joined);
     if (status) return status;
     for (uint64_t j = 0; j < length; ++j) {

@@ -126,12 +126,8 @@ static int read_piece(const char *source, void *vtk_file);
 
 /* Reads the file of file->source. */
 static int read_file(struct vtk_file *file, read_grid *read) {
-    struct vtk_grid grid = {.file = file->source->lines.name,
-                            .wanted = file->wanted,
-                            .count = file->count,
-                            .take = take_points_of,
-                            .open = file->depth < DEEPEST ? read_piece : NULL,
-                            .context = file};
+    struct vtk_grid grid = {.file = file->source->lines.name, .wanted = file->wanted, .count = file->count};
+    grid.take = take_points_of, grid.open = file->depth < DEEPEST ? read_piece : NULL, grid.context = file;
     char *text;
     size_t size;
     int status = lines_rest(&file->source->lines, &text, &size);

@@ -1,6 +1,7 @@
 /* bed.c - a bed: its scene and its threads. SPDX-License-Identifier: MIT */
 #include "simple/bed.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -168,4 +169,8 @@ int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const 
     status = fibrad_contacts_find(&bed->config, &bed->spheres, rule, &bed->contacts);
     *list = bed->contacts;
     return fibrad_bed_end(bed, status);
+}
+
+double fibrad_bed_wall_area(const fibrad_bed *bed, uint32_t wall) {
+    return bed && wall < bed->facts.walls ? fibrad_scene_wall_area(bed->scene, wall) : NAN;
 }

@@ -29,7 +29,8 @@ typedef struct fibrad_stepping {
     double *allowed;                  /* [n] power that a sphere may miss in the solution of the linear problem */
     double *found, *power;            /* [n] temperatures and powers of the linear problem */
     double *solution;                 /* [n] temperatures of the stage, which keep the energy */
-    double *conducts;                 /* [n] what contacts conduct from a sphere for each kelvin [W/K] */
+    double *conducts;                 /* [n] what contacts and films conduct from a sphere for each kelvin [W/K] */
+    double *gas, *wall_gas;           /* [n], [walls] temperatures of the gas at films in a stage [K] */
     double *wall_stage;               /* [4 walls] temperatures, powers of each stage, energies of the span */
 } fibrad_stepping;
 

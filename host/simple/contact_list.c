@@ -6,8 +6,6 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-#define PI 3.14159265358979323846
-
 int fibrad_contact_add(struct contact_block *block, const struct contact_found *contact) {
     if (block->n == block->capacity) {
         if (block->capacity > UINT32_MAX / 2) return FIBRAD_E_UNSUPPORTED;
@@ -73,13 +71,13 @@ static inline double ring_of(const struct gas_pair *p, double u) {
     const double c = p->distance - u, gap = larger_of(u + p->jump, p->least);
     const double less = p->small * p->small - p->large * p->large;
     const double l_small = (c + less / c) / 2, l_large = (c - less / c) / 2;
-    return 2 * PI * l_small * l_large / c / (l_small / p->k_small + l_large / p->k_large + gap / p->k_gas);
+    return 2 * M_PI * l_small * l_large / c / (l_small / p->k_small + l_large / p->k_large + gap / p->k_gas);
 }
 
 /* The same between a sphere and a wall. */
 static inline double ring_at_wall(const struct gas_pair *p, double u) {
     const double c = p->distance - u, gap = larger_of(u + p->jump, p->least);
-    return 2 * PI * c / (c / p->k_small + gap / p->k_gas);
+    return 2 * M_PI * c / (c / p->k_small + gap / p->k_gas);
 }
 
 /* The integral of ring_of over a stretch of gaps, by Gauss's rule of eight points. */

@@ -5,7 +5,7 @@
  *   bed      spheres and walls: made, moved, freed          fibrad_bed_new, _move, _free
  *            facts, where an error is, probable mistakes    fibrad_bed_describe, _warnings
  *   factors  view factors and exchange factors of a bed     fibrad_bed_factors, fibrad_bed_matrix_free
- *            one wall's row; a bed's factors in one call    fibrad_bed_wall_row, fibrad_view_factors
+ *            area of a wall, its row; all in one call       fibrad_bed_wall_area, _wall_row, fibrad_view_factors
  *   heat     net powers and temperatures                    fibrad_bed_solve; fibrad_bed_sides: of triangles
  *            numbers of directions, points and patches      fibrad_bed_beams
  *            light from outside, first hits included        fibrad_bed_shine
@@ -194,6 +194,10 @@ void fibrad_bed_matrix_free(fibrad_bed_matrix *matrix);
 int fibrad_view_factors(const fibrad_scene_config *config, const fibrad_spheres *spheres, const fibrad_bed_rule *rule,
                         fibrad_run *run, fibrad_bed_matrix **matrix);
 
+/* The area of a wall: fibrad_scene_wall_area.
+ *   Errors   NaN: bed is NULL, or there is no such wall */
+double fibrad_bed_wall_area(const fibrad_bed *bed, uint32_t wall);
+
 /* The row of one wall or opening: fibrad_exchange_wall and fibrad_exchange_wall_mean. The number of paths grows until
  * the error is at most `tolerance`, up to 2^24 paths.
  *   Input    wall: as in fibrad_exchange_wall
@@ -309,39 +313,41 @@ typedef struct fibrad_span {
     double duration;        /* s, above 0 to FIBRAD_DURATION_MAX */
     const double *wall_temperature; /* K, [walls], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
-    double step;                    /* s; all steps are equal and at most this long; 0: automatic steps */
-    double tolerance;               /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
-    double *power;                  /* W, [spheres], out: net radiative power at the end; may be NULL */
-    double *wall_power;             /* W, [walls], out: net radiative power at the end; may be NULL */
-    double surroundings_power;      /* W, out: net radiative power at the end */
-    double *wall_energy;            /* J, [walls], out: gained by radiation during the span; may be NULL */
-    double surroundings_energy;     /* J, out: gained by radiation during the span */
-    fibrad_law *law;                /* called in each stage; NULL: emissivities are constant */
-    fibrad_observe *observe;        /* NULL: none */
-    void *context;                  /* handed to observe */
-    double error;                   /* out: largest estimated relative error of a temperature in one step */
-    uint64_t steps;                 /* out: steps taken */
-    uint64_t refused;               /* out: steps tried and refused */
-    uint64_t sweeps;                /* out: sweeps over all beams or, where factors serve, over all factors */
-    uint64_t corrections;           /* out: solutions by patches that correct factors */
+    const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
+    double step;                  /* s; all steps are equal and at most this long; 0: automatic steps */
+    double tolerance;             /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
+    double *power;                /* W, [spheres], out: net power at the end; may be NULL */
+    double *wall_power;           /* W, [walls], out: net power at the end; may be NULL */
+    double surroundings_power;    /* W, out: net power at the end */
+    double *wall_energy;          /* J, [walls], out: gained during the span; may be NULL */
+    double surroundings_energy;   /* J, out: gained during the span */
+    double gas_power, gas_energy; /* W and J, out: the same of the gas of all films */
+    fibrad_law *law;              /* called in each stage; NULL: emissivities are constant */
+    fibrad_observe *observe;      /* NULL: none */
+    void *context;                /* handed to observe */
+    double error;                 /* out: largest estimated relative error of a temperature in one step */
+    uint64_t steps;               /* out: steps taken */
+    uint64_t refused;             /* out: steps tried and refused */
+    uint64_t sweeps;              /* out: sweeps over all beams or, where factors serve, over all factors */
+    uint64_t corrections;         /* out: solutions by patches that correct factors */
 } fibrad_span;
 
 /* Advances the temperatures of spheres by a span of time: C dT/dt = power + net power, C being the heat capacity of a
  * sphere [J/K]. The scheme is implicit (SDIRK), of second order and L-stable: small spheres among large ones do not
- * limit the step. The energy that spheres lose by radiation is what walls and surroundings gain, to rounding. The first
+ * limit the step. The energy that spheres lose is what walls, surroundings and gas gain, to rounding. The first
  * automatic step of a span is as long as the last span has proposed.
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * if there are contacts, or if the temperature of a wall is to be found.
+ * if there are contacts or films, or if the temperature of a wall is to be found.
  *
  *   field of sources                    use
  *   temperature, storage, reference     not used
  *   power                               constant
  *   emissivity, wall_emissivity         constant, or where a law begins
- *   wall_temperature, surroundings      at the beginning of the span; NaN: to be found
+ *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: to be found
  *   wall_power, insulated, side_temperature    constant
- *   conductivity, conductance           constant, or changed by a law; contacts act on means of surfaces
+ *   conductivity, conductance, film     constant, or changed by a law; contacts act on means of surfaces
  *   sigma, sweeps_max                   as for fibrad_bed_solve
  *   tolerance                           residual of a stage by patches; 0: a tenth of the span's tolerance
  *

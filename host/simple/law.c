@@ -59,10 +59,8 @@ static int follow_law(fibrad_bed *bed, const fibrad_heat_sources *sources, const
                       const fibrad_scene_facts *facts, const struct settling *s, fibrad_heat_result *result) {
     const uint32_t n = facts->spheres, walls = facts->walls, conducting = sources->conductivity ? n : 0;
     const uint32_t contacts = sources->conductance ? sources->contacts : 0;
-    fibrad_heat_result found = {.power = s->power,
-                                .wall_power = s->wall_power,
-                                .temperature = s->temperature,
-                                .wall_temperature = s->wall_temperature};
+    fibrad_heat_result found = {.power = s->power, .wall_power = s->wall_power, .temperature = s->temperature};
+    found.wall_temperature = s->wall_temperature;
     fibrad_heat_sources now = *sources;
     now.emissivity = s->emissivity, now.wall_emissivity = s->wall_emissivity;
     if (contacts) now.conductance = s->conductance; /* the law may change those of the caller before they are read */

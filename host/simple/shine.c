@@ -26,8 +26,7 @@ struct shine_tasks {
 /* Allocates the arrays, in one block but for kept and ray. hits.spots is the bed's. */
 static int begin_shine(struct shine_tasks *t) {
     fibrad_bed *bed = t->bed;
-    const size_t patches = fibrad_heat_patches(bed->heat);
-    const size_t surfaces = bed->facts.spheres + t->walls;
+    const size_t patches = fibrad_heat_patches(bed->heat), surfaces = bed->facts.spheres + t->walls;
     double *block = calloc(3 * patches + 4 * surfaces + 2, sizeof *block);
     t->kept = calloc(fibrad_heat_shine_tasks(bed->heat) + (size_t)1, sizeof *t->kept);
     if (!block || !t->kept) {
@@ -186,10 +185,8 @@ static int absorb(const struct shine_tasks *t, fibrad_light_result *result) {
     sources.emissivity = s->absorptivity, sources.wall_emissivity = s->wall_absorptivity;
     sources.tolerance = s->tolerance > 0 ? s->tolerance : LIGHT_TOLERANCE;
     sources.light = t->hits.light;
-    fibrad_heat_result solved = {.power = result->absorbed,
-                                 .wall_power = result->wall_absorbed,
-                                 .power_error = result->absorbed_error,
-                                 .wall_error = result->wall_absorbed_error};
+    fibrad_heat_result solved = {.power = result->absorbed, .wall_power = result->wall_absorbed};
+    solved.power_error = result->absorbed_error, solved.wall_error = result->wall_absorbed_error;
     int status = fibrad_bed_solve_now(bed, &sources, &solved);
     if (!status) status = fibrad_heat_sum_light(bed->heat, t->hits.spots, spots, spots + bed->facts.spheres);
     const struct arrived arrived = arrived_of(t);

@@ -33,14 +33,15 @@ struct stepper {
     double tolerance;
     fibrad_heat_sources sources; /* of the linear problem of a stage */
     fibrad_heat_result result;
-    double *stage_walls[2], to_surroundings[2]; /* powers of walls [walls] and of the surroundings in each stage */
+    double *stage_walls[2], to_surroundings[2],
+        to_gas[2]; /* powers of walls [walls], surroundings, gas in each stage */
 };
 
 static double power_of(const struct stepper *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
-/* Sets the temperatures of walls and surroundings at a time since the beginning of the span. */
+/* Sets the temperatures of walls, surroundings and gas at a time since the beginning of the span. */
 static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
@@ -48,6 +49,10 @@ static void set_outside(struct stepper *m, double time) {
         m->t->wall_stage[b] = span->wall_temperature
                                   ? share_between(m->given->wall_temperature[b], span->wall_temperature[b], share)
                                   : m->given->wall_temperature[b];
+    for (uint32_t i = 0; span->gas && i < m->bed->facts.spheres; ++i)
+        m->t->gas[i] = share_between(m->given->gas[i], span->gas[i], share);
+    for (uint32_t b = 0; span->wall_gas && b < m->bed->facts.walls; ++b)
+        m->t->wall_gas[b] = share_between(m->given->wall_gas[b], span->wall_gas[b], share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
@@ -64,10 +69,10 @@ static bool stands_alone(const struct stepper *m, uint32_t i) {
     return m->sources.emissivity[i] == 0 && m->t->conducts[i] == 0;
 }
 
-/* Finds what contacts conduct from each sphere for each kelvin. */
+/* Finds what contacts and films conduct from each sphere for each kelvin. */
 static void find_conducts(struct stepper *m) {
     fibrad_stepping *t = m->t;
-    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) t->conducts[i] = 0;
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) t->conducts[i] = m->given->film ? m->given->film[i] : 0;
     for (uint32_t k = 0; k < m->given->contacts; ++k) {
         const uint32_t i = m->given->contact_first[k], j = m->given->contact_second[k];
         if (i == j) continue;
@@ -109,7 +114,7 @@ static bool accept_solution(struct stepper *m, double length) {
  * its neighbours at once, takes little of it. The energy still missing warms all spheres alike. */
 static void balance_energy(struct stepper *m, double length) {
     fibrad_stepping *t = m->t;
-    double left = -m->result.surroundings_power, capacity = 0;
+    double left = -m->result.surroundings_power - m->result.gas_power, capacity = 0;
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b) left -= m->result.wall_power[b];
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double rate = m->span->capacity[i] / length, at = t->solution[i];
@@ -144,7 +149,7 @@ static int solve_stage(struct stepper *m, int stage, double time, double length)
         m->span->sweeps += m->result.sweeps;
         if (!accept_solution(m, length) || status) continue;
         balance_energy(m, length);
-        m->to_surroundings[stage] = m->result.surroundings_power;
+        m->to_surroundings[stage] = m->result.surroundings_power, m->to_gas[stage] = m->result.gas_power;
         return all_positive(t->solution, m->bed->facts.spheres) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
     }
     return FIBRAD_E_UNSOLVABLE;
@@ -190,6 +195,7 @@ static void accept_step(struct stepper *m, double step, double error) {
         for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
             span->wall_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
+        span->gas_energy += share[stage] * m->to_gas[stage];
     }
     span->error = larger_of(span->error, error);
     ++span->steps, ++t->steps;
@@ -205,7 +211,8 @@ static double first_step(const struct stepper *m) {
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) hottest = larger_of(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i));
+        const double film = m->given->film ? m->given->film[i] * (m->given->gas[i] - t->now[i]) : 0;
+        const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i)) + fabs(film);
         if (rate > 0) step = smaller_of(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
     return step;
@@ -276,13 +283,13 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
     if (s->contacts > 0 && !(s->contact_first && s->contact_second && s->conductance)) return FIBRAD_E_ARGUMENT;
     for (uint32_t k = 0; k < s->contacts; ++k)
         if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
-    return FIBRAD_OK;
+    return (span->gas && !s->gas) || (span->wall_gas && !s->wall_gas) ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
 }
 
-/* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each and no
- * contacts, and the temperatures of walls and surroundings are known. */
+/* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
+ * contacts and no films, and the temperatures of walls and surroundings are known. */
 static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
-    bool suffice = !span->law && !s->conductivity && s->contacts == 0;
+    bool suffice = !span->law && !s->conductivity && s->contacts == 0 && !s->film && !s->wall_film;
     suffice = suffice && s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
     for (uint32_t b = 0; b < bed->facts.walls; ++b)
         suffice = suffice && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
@@ -297,6 +304,7 @@ static void end_span(const struct stepper *m, fibrad_span *span) {
     const fibrad_span given = *span;
     *span = *m->span;
     span->wall_energy = given.wall_energy, span->surroundings_power = m->to_surroundings[1];
+    span->gas_power = m->to_gas[1];
     memcpy(span->temperature, t->now, n * sizeof *t->now);
     if (span->power) memcpy(span->power, t->power, n * sizeof *t->power);
     for (uint32_t b = 0; b < walls; ++b) {
@@ -315,17 +323,15 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     fibrad_stepping *t = &bed->stepping;
     const uint32_t n = bed->facts.spheres, walls = bed->facts.walls;
     fibrad_span now = *span;
-    struct stepper m = {.bed = bed,
-                        .t = t,
-                        .given = sources,
-                        .span = &now,
-                        .tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE,
-                        .sources = *sources,
-                        .result = {.power = t->power, .temperature = t->found},
-                        .stage_walls = {t->wall_stage + walls, t->wall_stage + 2 * (size_t)walls}};
+    struct stepper m = {.bed = bed, .t = t, .given = sources, .span = &now, .sources = *sources};
+    m.tolerance = span->tolerance > 0 ? span->tolerance : TOLERANCE;
+    m.result.power = t->power, m.result.temperature = t->found;
+    for (size_t k = 0; k < 2; ++k) m.stage_walls[k] = t->wall_stage + (k + 1) * walls;
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.storage = t->storage, m.sources.reference = t->guess;
     m.sources.wall_temperature = t->wall_stage;
+    if (span->gas) m.sources.gas = t->gas;
+    if (span->wall_gas) m.sources.wall_gas = t->wall_gas;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     memcpy(t->now, span->temperature, n * sizeof *t->now);
     t->by_factors = factors_suffice(bed, sources, span) &&
@@ -337,7 +343,7 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
         for (uint32_t b = 0; b < walls; ++b) t->wall_emissivity[b] = sources->wall_emissivity[b];
         m.sources.emissivity = t->emissivity, m.sources.wall_emissivity = t->wall_emissivity;
     }
-    now.surroundings_energy = now.error = 0;
+    now.surroundings_energy = now.gas_energy = now.error = 0;
     now.steps = now.refused = now.sweeps = now.corrections = 0;
     now.wall_energy = t->wall_stage + 3 * (size_t)walls;
     for (uint32_t b = 0; b < walls; ++b) now.wall_energy[b] = 0;

@@ -1,20 +1,19 @@
 /* stepping.c - memory of steps in time. SPDX-License-Identifier: MIT */
+#include <math.h>
 #include <stdlib.h>
 
 #include "simple/bed.h"
-
-#define PI 3.14159265358979323846
 
 /* Allocates all arrays, in one block. */
 static int take_arrays(fibrad_bed *bed) {
     fibrad_stepping *t = &bed->stepping;
     const size_t n = bed->facts.spheres, all = bed->facts.walls;
-    double **const of_spheres[] = {&t->area,     &t->emissivity, &t->now,     &t->slope,    &t->base,
-                                   &t->first,    &t->guess,      &t->storage, &t->source,   &t->found,
-                                   &t->power,    &t->given,      &t->allowed, &t->solution, &t->correction,
-                                   &t->compared, &t->by_patches, &t->conducts};
+    double **const of_spheres[] = {&t->area,     &t->emissivity, &t->now,      &t->slope,    &t->base,
+                                   &t->first,    &t->guess,      &t->storage,  &t->source,   &t->found,
+                                   &t->power,    &t->given,      &t->allowed,  &t->solution, &t->correction,
+                                   &t->compared, &t->by_patches, &t->conducts, &t->gas};
     double **const of_walls[] = {&t->wall_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
-                                 &t->wall_stage}; /* the last one has four per wall */
+                                 &t->wall_gas,        &t->wall_stage}; /* the last one has four per wall */
     const size_t spheres = sizeof of_spheres / sizeof *of_spheres, walls = sizeof of_walls / sizeof *of_walls;
     double *next = calloc(spheres * n + (walls + 3) * all + 1, sizeof *next);
     if (!next) return FIBRAD_E_MEMORY;
@@ -26,7 +25,7 @@ static int take_arrays(fibrad_bed *bed) {
 int fibrad_stepping_make(fibrad_bed *bed) {
     const int status = bed->stepping.area ? FIBRAD_OK : take_arrays(bed);
     for (uint32_t i = 0; i < bed->facts.spheres && !status; ++i)
-        bed->stepping.area[i] = 4 * PI * bed->spheres.r[i] * bed->spheres.r[i];
+        bed->stepping.area[i] = 4 * M_PI * bed->spheres.r[i] * bed->spheres.r[i];
     return status;
 }
 

@@ -17,7 +17,6 @@
 #define CHANGE_LEAST  1e-4  /* a change of factors that is felt */
 #define STORE_LOW     300.0 /* [J/(m3 K)] a margin of 2 beyond all solids, from aerogel to uranium */
 #define STORE_HIGH    3e9
-#define PI            3.14159265358979323846
 
 static fibrad_warning *new_warning(fibrad_warning *list, int code, uint32_t first, double value) {
     fibrad_warning *warning = &list[code - 1];
@@ -165,7 +164,7 @@ void fibrad_bed_warn_of_surfaces(fibrad_bed *bed, const fibrad_heat_result *resu
 
 void fibrad_bed_warn_of_stores(fibrad_bed *bed, const double *capacity) {
     for (uint32_t i = 0; i < bed->facts.spheres; ++i) {
-        const double r = bed->spheres.r[i], store = capacity[i] / (4 * PI / 3 * r * r * r);
+        const double r = bed->spheres.r[i], store = capacity[i] / (4 * M_PI / 3 * r * r * r);
         if (store >= STORE_LOW && store <= STORE_HIGH) continue;
         new_warning(bed->warning, FIBRAD_WARNING_STORE, i, store);
         return;

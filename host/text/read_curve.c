@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/memory.h"
+#include "cli/message.h"
 #include "text/header.h"
 #include "text/unit.h"
 
@@ -256,8 +256,7 @@ double curve_advance(const struct curve *curve, double x, double area) {
         const double slope = inside ? (curve->y[k] - curve->y[k - 1]) / (curve->x[k] - curve->x[k - 1]) : 0;
         const double y = curve_at(curve, x);
         const bool last = up ? k == n : k == 0;
-        const double end = last ? x : curve->x[up ? k : k - 1];
-        const double until = (y + curve_at(curve, end)) / 2 * (end - x);
+        const double end = last ? x : curve->x[up ? k : k - 1], until = (y + curve_at(curve, end)) / 2 * (end - x);
         if (last || fabs(area) <= fabs(until)) return x + 2 * area / (y + sqrt(fmax(0, y * y + 2 * slope * area)));
         area -= until;
         x = end;

@@ -11,7 +11,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "cli/interrupt.h"
+#include "cli/message.h"
 #include "cli/output.h"
 #include "text/read_number.h"
 

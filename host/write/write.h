@@ -58,24 +58,33 @@ write_function write_heat_csv, write_heat_vtp, write_heat_json, write_heat_dump;
 enum { WALL_NAME = MESH_NAME };
 const char *contents_wall(const struct contents *what, uint32_t k, char name[WALL_NAME]);
 
-/* A column of the heat of spheres: a value, less another one. */
+/* A column of the heat of spheres: a value, less two others. */
 struct heat_column {
     const char *name;
-    const double *value, *less; /* [n]; value NULL: there is no such column; less NULL: nothing is subtracted */
+    const double *value, *less, *less_too; /* [n]; value NULL: there is no such column; others NULL: count as 0 */
 };
 
 /* Columns from HEAT_INSIDE on belong to spheres that conduct, those from HEAT_LIGHT on to light from outside, those
  * from HEAT_PARTS on are parts of the power. */
-enum { HEAT_TEMPERATURE, HEAT_POWER, HEAT_INSIDE = 4, HEAT_LIGHT = 9, HEAT_PARTS = 11, HEAT_COLUMNS = 13 };
+enum {
+    HEAT_TEMPERATURE,
+    HEAT_POWER,
+    HEAT_POWER_ERROR,
+    HEAT_TEMPERATURE_ERROR,
+    HEAT_INSIDE,
+    HEAT_LIGHT = 9,
+    HEAT_PARTS = 11,
+    HEAT_COLUMNS = 14
+};
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]);
 
-/* The same of wall k, or of the surroundings (k = -1), whose insides are NaN. Their light is what leaves at first and
- * in all. Returns the name; NULL: there are no surroundings. */
+/* The same of wall k, of the surroundings (k = -1) or of the gas of films (k = number of walls), whose insides are NaN.
+ * Their light is what leaves at first and in all. Returns the name; NULL: there are no surroundings, or no gas. */
 const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_NAME], double value[HEAT_COLUMNS]);
 
 /* The value of sphere i. */
 static inline double heat_value(const struct heat_column *column, uint32_t i) {
-    return column->less ? column->value[i] - column->less[i] : column->value[i];
+    return column->value[i] - (column->less ? column->less[i] : 0) - (column->less_too ? column->less_too[i] : 0);
 }
 
 /* Extremes, means and errors of the rows that were computed. */

@@ -7,7 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"
@@ -154,7 +153,7 @@ static void write_power(struct csv *csv, int64_t name, const char *wall, const s
 int write_heat_csv(FILE *file, const struct contents *what) {
     struct csv csv = {.named = true};
     struct heat_column column[HEAT_COLUMNS];
-    char wall[WALL_NAME], names[200] = "i";
+    char wall[WALL_NAME], names[220] = "i";
     double value[HEAT_COLUMNS] = {0};
     heat_columns(what, column);
     for (int k = 0; k < HEAT_COLUMNS; ++k)
@@ -166,7 +165,7 @@ int write_heat_csv(FILE *file, const struct contents *what) {
             if (column[k].value) value[k] = heat_value(&column[k], i);
         write_power(&csv, bed_name(what->bed, i), "", column, value);
     }
-    for (int64_t k = -1; what->walls && k < what->walls->count; ++k) {
+    for (int64_t k = -1; what->walls && k <= what->walls->count; ++k) {
         const char *name = heat_outside(what, k, wall, value);
         if (name) write_power(&csv, FIRST_WALL - k, name, column, value);
     }

@@ -1,12 +1,11 @@
 /* write_dump.c - heat as a LAMMPS text dump, which OVITO and fibrad itself read. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"
 
-static void write_header(FILE *file, const struct bed *bed, bool conducts, bool first) {
+static void write_header(FILE *file, const struct bed *bed, const struct heat_column *column, bool first) {
     if (first && bed->units[0]) fprintf(file, "ITEM: UNITS\n%s\n", bed->units);
     fprintf(file, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRIu32 "\nITEM: BOX BOUNDS",
             bed->timestep < 0 ? bed->frame : bed->timestep, bed->n);
@@ -20,24 +19,27 @@ static void write_header(FILE *file, const struct bed *bed, bool conducts, bool 
         *at++ = '\n';
         fwrite(line, 1, (size_t)(at - line), file);
     }
-    fprintf(file, "ITEM: ATOMS id x y z radius T_K q_W%s%s%s\n", conducts ? " q_radiation_W q_conduction_W" : "",
-            bed->kept_names ? " " : "", bed->kept_names ? bed->kept_names : "");
+    fputs("ITEM: ATOMS id x y z radius T_K q_W", file);
+    for (int k = HEAT_PARTS; k < HEAT_COLUMNS; ++k)
+        if (column[k].value) fprintf(file, " %s", column[k].name);
+    fprintf(file, "%s%s\n", bed->kept_names ? " " : "", bed->kept_names ? bed->kept_names : "");
 }
 
 int write_heat_dump(FILE *file, const struct contents *what) {
     const struct bed *bed = what->bed;
     struct heat_column column[HEAT_COLUMNS];
     heat_columns(what, column);
-    const bool conducted = column[HEAT_PARTS].value;
-    char line[10 * TEXT_NUMBER];
-    write_header(file, bed, conducted, what->first);
+    char line[12 * TEXT_NUMBER];
+    write_header(file, bed, column, what->first);
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (interrupt_status()) return interrupt_status();
-        double value[8] = {
+        size_t values = 6;
+        double value[9] = {
             bed->x[i], bed->y[i], bed->z[i], bed->r[i], what->result->temperature[i], what->result->power[i]};
-        for (int k = 0; k < 2 && conducted; ++k) value[6 + k] = heat_value(&column[HEAT_PARTS + k], i);
+        for (int k = HEAT_PARTS; k < HEAT_COLUMNS; ++k)
+            if (column[k].value) value[values++] = heat_value(&column[k], i);
         char *at = text_whole(line, bed_name(bed, i));
-        for (size_t k = 0; k < (conducted ? 8 : 6); ++k) {
+        for (size_t k = 0; k < values; ++k) {
             *at++ = ' ';
             at = text_real(at, value[k]);
         }

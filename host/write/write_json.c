@@ -5,7 +5,6 @@
 #include <inttypes.h>
 #include <math.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"
@@ -123,17 +122,18 @@ int write_heat_json(FILE *file, const struct contents *what) {
     heat_columns(what, column);
     for (int k = 0; k < HEAT_COLUMNS; ++k)
         if (column[k].value) json_column(file, &column[k], what->bed->n);
-    for (int64_t k = -1; what->walls && k < walls; ++k) {
+    for (int64_t k = -1; what->walls && k <= walls; ++k) {
         double value[HEAT_COLUMNS];
         const char *name = heat_outside(what, k, wall, value);
+        if (k == walls && walls > 0) putc('}', file);
         if (!name) continue;
-        fprintf(file, "%s\"%s\":{\"T_K\":", k == 0 ? ",\"walls\":{" : ",", name);
+        fprintf(file, "%s\"%s\":{\"T_K\":", k == 0 && walls > 0 ? ",\"walls\":{" : ",", name);
         text_json_real(file, value[HEAT_TEMPERATURE]);
         for (int c = HEAT_POWER; c < HEAT_COLUMNS; ++c)
             if ((c < HEAT_INSIDE || c >= HEAT_PARTS) && column[c].value) json_entry(file, column[c].name, value[c]);
         putc('}', file);
     }
-    fputs(walls > 0 ? "}}\n" : "}\n", file);
+    fputs("}\n", file);
     return interrupt_status();
 }
 

@@ -2,7 +2,7 @@
  *
  * Arrays on triangles: `body`, k of wall -2 - k; `front` and `back`, 1 if this side is a wall; `place`, the line or
  * number in the mesh's file; `area`; arrays of the contents. */
-#include "cli/interrupt.h"
+#include "cli/message.h"
 #include "write/vtp_array.h"
 #include "write/write.h"
 

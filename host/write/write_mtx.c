@@ -1,7 +1,6 @@
 /* write_mtx.c - a matrix in Matrix Market coordinates, rows and columns from 1. SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "text/text.h"
 #include "write/write.h"

@@ -9,7 +9,6 @@
 #include <string.h>
 #include <zlib.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "write/write.h"
 
@@ -42,8 +41,7 @@ static void put_all(FILE *file, const struct little *fields, size_t n) {
 static void make_header(const struct array *array, unsigned char header[HEADER]) {
     static const char magic[] = "\x93NUMPY\1";
     const uint16_t one = 1;
-    const bool little = *(const unsigned char *)&one == 1;
-    const bool bytes = array->type[0] == 'S' || array->type[1] == '1';
+    const bool little = *(const unsigned char *)&one == 1, bytes = array->type[0] == 'S' || array->type[1] == '1';
     const char order = bytes ? '|' : little ? '<' : '>';
     char text[HEADER], shape[48] = "";
     if (array->length != SCALAR && array->columns > 0)

@@ -4,7 +4,7 @@
  * are binary. */
 #include <math.h>
 
-#include "cli/interrupt.h"
+#include "cli/message.h"
 #include "write/vtp_array.h"
 #include "write/write.h"
 

@@ -9,6 +9,8 @@
 #include "fibrad.h"
 #include "base/port.h"
 
+/* ---- lays objects out in the caller's memory --------------------------------------------------------------------- */
+
 /* Each array begins at a multiple of this number and is padded to a multiple of it. So an array holds whole vectors. */
 #define FIBRAD_ALIGNMENT 64
 
@@ -69,5 +71,12 @@ static inline int fibrad_arena_open(fibrad_arena *arena, void *memory, size_t si
     arena->size = size - lead;
     return FIBRAD_OK;
 }
+
+/* ---- makes a caller's block of memory large enough --------------------------------------------------------------- */
+
+/* Makes a block of at least `needed` bytes. Its contents stay. A block that grows has twice the size afterwards.
+ * Errors: FIBRAD_E_CAPACITY: a fixed block is too small, and memory->needed is set. _MEMORY: the caller has no more
+ * memory. */
+int fibrad_memory_reserve(fibrad_memory *memory, size_t needed);
 
 #endif

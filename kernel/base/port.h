@@ -35,6 +35,8 @@ static inline void fibrad_zero(void *to, size_t bytes) { __builtin_memset(to, 0,
 
 #endif
 
+#define FIBRAD_PI 3.14159265358979323846
+
 /* For few functions: a call would take longer than the function itself, but the compiler would make a call. */
 #define FIBRAD_INLINE static inline __attribute__((always_inline))
 

@@ -1,5 +1,5 @@
 /* reserve.c - makes a caller's block of memory large enough. SPDX-License-Identifier: MIT */
-#include "base/reserve.h"
+#include "base/arena.h"
 
 int fibrad_memory_reserve(fibrad_memory *memory, size_t needed) {
     if (needed <= memory->size && memory->block != NULL) return FIBRAD_OK;

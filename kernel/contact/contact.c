@@ -2,7 +2,6 @@
  * SPDX-License-Identifier: MIT */
 #include "contact/contact.h"
 
-#include "base/elementary.h"
 #include "base/port.h"
 
 #define WARM_TOLERANCE 1e-7   /* of a linear system, relative */
@@ -57,13 +56,25 @@ void fibrad_contact_gains(const fibrad_contacts *c, const double *temperature, d
         const double flow = c->conductance[k] * (temperature[e.j] - temperature[e.i]);
         to[e.i] += flow, to[e.j] -= flow;
     }
+    for (uint32_t b = 0; b < c->nodes; b++)
+        if (c->film[b] > 0) to[b] += c->film[b] * (c->gas[b] - temperature[b]);
 }
 
-/* The exchange area of contact k between emissions. Near 0 K it would have no bound. */
-static double exchange_area(const fibrad_contacts *c, uint32_t k, contact_ends e) {
-    const double a = fibrad_max(fibrad_abs(c->temperature[e.i]), c->least),
-                 b = fibrad_max(fibrad_abs(c->temperature[e.j]), c->least);
-    return c->conductance[k] / (c->sigma * (a * a + b * b) * (a + b));
+/* The exchange area between emissions of a conductance. Near 0 K it would have no bound. */
+static double exchange_area(const fibrad_contacts *c, double conductance, double of_i, double of_j) {
+    const double a = fibrad_max(fibrad_abs(of_i), c->least), b = fibrad_max(fibrad_abs(of_j), c->least);
+    return conductance / (c->sigma * (a * a + b * b) * (a + b));
+}
+
+/* What a contact conducts per difference of the unknowns: emissions, or temperatures. */
+static double weight_of(const fibrad_contacts *c, bool kelvins, uint32_t k, contact_ends e) {
+    return kelvins ? c->conductance[k] : exchange_area(c, c->conductance[k], c->temperature[e.i], c->temperature[e.j]);
+}
+
+/* The same of the film of a node. */
+static double film_weight(const fibrad_contacts *c, bool kelvins, uint32_t node) {
+    const double film = c->film[node];
+    return kelvins || film == 0 ? film : exchange_area(c, film, c->temperature[node], c->gas[node]);
 }
 
 static double if_free(const fibrad_contacts *c, const double *value, uint32_t node) {
@@ -75,14 +86,11 @@ double fibrad_contact_product(const fibrad_contacts *c, const double *a, const d
     for (uint32_t k = 0; k < c->count; k++) {
         const contact_ends e = nodes_of(c, k);
         const double of_a = if_free(c, a, e.j) - if_free(c, a, e.i), of_b = if_free(c, b, e.j) - if_free(c, b, e.i);
-        if (of_a != 0 && of_b != 0) sum += exchange_area(c, k, e) * of_a * of_b;
+        if (of_a != 0 && of_b != 0) sum += weight_of(c, false, k, e) * of_a * of_b;
     }
+    for (uint32_t node = 0; node < c->nodes; node++)
+        if (c->film[node] > 0) sum += film_weight(c, false, node) * if_free(c, a, node) * if_free(c, b, node);
     return sum;
-}
-
-/* What a contact conducts per difference of the unknowns: emissions, or temperatures. */
-static double weight_of(const fibrad_contacts *c, bool kelvins, uint32_t k, contact_ends e) {
-    return kelvins ? c->conductance[k] : exchange_area(c, k, e);
 }
 
 /* What a free node gives off by radiation and storage per unit of its unknown. */
@@ -94,7 +102,8 @@ static double own_weight(const fibrad_contacts *c, bool kelvins, uint32_t node) 
 /* contacts->product = the matrix of the network times x on free nodes. x is 0 on all others. */
 static void multiply_contacts(fibrad_contacts *c, bool kelvins, const double *x) {
     for (uint32_t b = 0; b < c->nodes; b++)
-        c->product[b] = c->kind[b] == FIBRAD_CONTACT_FREE ? own_weight(c, kelvins, b) * x[b] : 0;
+        c->product[b] =
+            c->kind[b] == FIBRAD_CONTACT_FREE ? (own_weight(c, kelvins, b) + film_weight(c, kelvins, b)) * x[b] : 0;
     for (uint32_t k = 0; k < c->count; k++) {
         const contact_ends e = nodes_of(c, k);
         if (!(c->conductance[k] > 0)) continue;
@@ -104,7 +113,7 @@ static void multiply_contacts(fibrad_contacts *c, bool kelvins, const double *x)
 }
 
 static void find_diagonal(fibrad_contacts *c, bool kelvins) {
-    for (uint32_t b = 0; b < c->nodes; b++) c->diagonal[b] = own_weight(c, kelvins, b);
+    for (uint32_t b = 0; b < c->nodes; b++) c->diagonal[b] = own_weight(c, kelvins, b) + film_weight(c, kelvins, b);
     for (uint32_t k = 0; k < c->count; k++) {
         const contact_ends e = nodes_of(c, k);
         const double weight = e.i != e.j ? weight_of(c, kelvins, k, e) : 0;

@@ -11,8 +11,8 @@
  *
  *     g = H/(sigma (T_i^2 + T_j^2) (T_i + T_j)).
  *
- * Temperatures below zero are allowed on the way: there E = -sigma (T^4 + zero^4).
- * Source: docs/methods.md section 28. */
+ * A film is a contact with gas of a given temperature. Temperatures below zero are allowed on the way: there E = -sigma
+ * (T^4 + zero^4). Source: docs/methods.md section 28. */
 #ifndef FIBRAD_CONTACT_H
 #define FIBRAD_CONTACT_H
 
@@ -20,7 +20,7 @@
 #include <stdint.h>
 
 typedef enum fibrad_contact_kind {
-    FIBRAD_CONTACT_NONE,  /* the node has no contacts */
+    FIBRAD_CONTACT_NONE,  /* the node has no contacts and no film */
     FIBRAD_CONTACT_GIVEN, /* its temperature is given, or nothing is known of it yet */
     FIBRAD_CONTACT_FREE   /* its temperature is to be found */
 } fibrad_contact_kind;
@@ -29,6 +29,8 @@ typedef struct fibrad_contacts {
     uint32_t nodes, count;               /* numbers of nodes and contacts */
     const uint32_t *first, *second;      /* [count], the caller's numbers of the two ends */
     const double *conductance;           /* sigma K^3 L^2, [count], the caller's */
+    double *film, *gas;                  /* sigma K^3 L^2 and K, [nodes], of films; 0: the node has none */
+    bool joins;                          /* there are contacts or films */
     uint32_t *node;                      /* node by the caller's number */
     unsigned char *kind;                 /* [nodes], a fibrad_contact_kind */
     double sigma, zero;                  /* zero: the temperature at which E is 0 */
@@ -56,7 +58,7 @@ typedef struct fibrad_contact_parts {
 double fibrad_contact_emission(const fibrad_contacts *contacts, double temperature);
 double fibrad_contact_temperature(const fibrad_contacts *contacts, double emission);
 
-/* Marks the nodes that have contacts as GIVEN, all others as NONE. */
+/* Marks the nodes that have contacts as GIVEN, all others as NONE. Films are not looked at. */
 void fibrad_contact_mark(fibrad_contacts *contacts);
 
 /* Joins the components of two nodes. Begin with root[k] = k. */
@@ -65,10 +67,11 @@ void fibrad_contact_join(fibrad_contact_parts *parts, uint32_t a, uint32_t b);
 /* The node that stands for the component of a node. */
 uint32_t fibrad_contact_root(fibrad_contact_parts *parts, uint32_t node);
 
-/* Adds to `to` what nodes gain through contacts at temperatures T. */
+/* Adds to `to` what nodes gain through contacts and films at temperatures T. */
 void fibrad_contact_gains(const fibrad_contacts *contacts, const double *temperature, double *to);
 
-/* The sum over contacts of g times the product of the differences of a and b, which count 0 on nodes that are not free.
+/* The sum over contacts and films of g times the product of the differences of a and b, which count 0 on nodes that are
+ * not free.
  */
 double fibrad_contact_product(const fibrad_contacts *contacts, const double *a, const double *b);
 

@@ -376,10 +376,8 @@ int fibrad_exchange_displacement(const fibrad_scene *scene, fibrad_work *work, u
     fibrad_workspace *space;
     if (rule == NULL || work == NULL || displacement == NULL) return FIBRAD_E_ARGUMENT;
     const bool conduct = rule->conductivity != NULL;
-    const fibrad_exchange_rule row = {.emissivity = rule->emissivity,
-                                      .wall_emissivity = rule->wall_emissivity,
-                                      .paths = rule->paths,
-                                      .seed = rule->seed};
+    fibrad_exchange_rule row = {.emissivity = rule->emissivity, .wall_emissivity = rule->wall_emissivity};
+    row.paths = rule->paths, row.seed = rule->seed;
     int status = exchange_begin(&task, scene, i, &row);
     if (status == FIBRAD_OK && conduct && rule->flights > FIBRAD_FLIGHTS_MAX) status = FIBRAD_E_ARGUMENT;
     if (status == FIBRAD_OK && conduct && (scene->container.walls || scene->mesh.triangles > 0))

@@ -1,9 +1,7 @@
 /* paths_lanes.c - traces paths. Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
 #include "base/lanes/laned.h"
-#include "base/elementary.h"
 #include "base/lanes/turn.h"
-#include "exchange/reemission.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
 #include "scene/surroundings.h"
@@ -183,8 +181,7 @@ static void reach_wall(const fibrad_scene *scene, struct grey_path *path, uint32
 static void meet_known(const fibrad_paths *paths, const fibrad_segment *segment, fibrad_hit *hit) {
     const fibrad_scene *scene = paths->tracer->scene;
     const double unit = scene->r[paths->place], r = scene->r[segment->sphere] * paths->inverse;
-    const double *c = segment->centre, *w = segment->w, *n = segment->n;
-    const double e[3] = {c[0] - n[0], c[1] - n[1], c[2] - n[2]};
+    const double *c = segment->centre, *w = segment->w, *n = segment->n, e[3] = {c[0] - n[0], c[1] - n[1], c[2] - n[2]};
     const double along = e[0] * w[0] + e[1] * w[1] + e[2] * w[2];
     const double across[3] = {e[0] - along * w[0], e[1] - along * w[1], e[2] - along * w[2]};
     const double square = r * r - (across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
@@ -385,14 +382,9 @@ static void leave_scene(fibrad_paths *paths, const struct grey_path *path, uint3
 }
 
 static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]) {
-    struct grey_path path = {.k = k,
-                             .part = (uint32_t)(k % 4),
-                             .sobol = sobol,
-                             .own = {fibrad_random_ahead(paths->stream, 8 + k)},
-                             .weight = 1,
-                             .least = ROULETTE_WEIGHT,
-                             .place = paths->place,
-                             .triangle = FIBRAD_NO_SIDE};
+    struct grey_path path = {.k = k, .part = (uint32_t)(k % 4), .own = {fibrad_random_ahead(paths->stream, 8 + k)}};
+    path.sobol = sobol, path.weight = 1, path.least = ROULETTE_WEIGHT, path.place = paths->place;
+    path.triangle = FIBRAD_NO_SIDE;
     const uint32_t first = paths->segments != NULL && k < paths->segments->length;
     double w[3];
     if (first) {

@@ -1,5 +1,5 @@
 /* reemission.c - relative conductivity, and what a ball gives off evenly. SPDX-License-Identifier: MIT */
-#include "exchange/reemission.h"
+#include "exchange/paths.h"
 
 #include "fibrad.h"
 

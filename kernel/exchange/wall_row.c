@@ -2,7 +2,6 @@
  *
  * The paths come in parts. Each part begins at evenly spread points, which are moved at random, part by part. So the
  * spread of the parts tells the error of their mean. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "exchange/paths.h"
 #include "row/row.h"
@@ -109,26 +108,17 @@ int fibrad_exchange_wall(const fibrad_scene *scene, fibrad_work *work, uint32_t 
         return FIBRAD_OK;
     }
 
-    const bool nodes = rule->node_emissivity != NULL;
-    const bool black = rule->emissivity == NULL && rule->wall_emissivity == NULL;
+    const bool nodes = rule->node_emissivity != NULL, black = rule->emissivity == NULL && rule->wall_emissivity == NULL;
     fibrad_sobol sobol;
     fibrad_sobol_make(&sobol);
     const uint32_t wanted = rule->paths > 0 ? rule->paths : FIBRAD_WALL_PATHS_DEFAULT;
     const uint32_t count = (wanted + FIBRAD_WALL_PARTS - 1) / FIBRAD_WALL_PARTS;
     const uint64_t turn = (uint64_t)slot * FIBRAD_WALL_PARTS + part; /* streams of walls count down, those of ids up */
-    const fibrad_paths none = {.tracer = fibrad_tracer_of(space, scene),
-                               .place = FIBRAD_NONE,
-                               .from = slot,
-                               .sobol = &sobol,
-                               .emissivity = nodes ? rule->node_emissivity : rule->emissivity,
-                               .surface = rule->emissivity,
-                               .conductivity = nodes ? rule->conductivity : NULL,
-                               .wall_emissivity = wall_emissivity,
-                               .boxed = black && is_box(scene),
-                               .stream = fibrad_random_start(rule->seed, UINT64_MAX - turn),
-                               .first = true,
-                               .reflected = reflected,
-                               .back = UINT32_MAX};
+    fibrad_paths none = {.tracer = fibrad_tracer_of(space, scene), .place = FIBRAD_NONE, .from = slot, .sobol = &sobol};
+    none.emissivity = nodes ? rule->node_emissivity : rule->emissivity, none.surface = rule->emissivity;
+    none.conductivity = nodes ? rule->conductivity : NULL, none.wall_emissivity = wall_emissivity;
+    none.boxed = black && is_box(scene), none.stream = fibrad_random_start(rule->seed, UINT64_MAX - turn);
+    none.first = true, none.reflected = reflected, none.back = UINT32_MAX;
     fibrad_paths paths = none;
     const uint64_t followed = fibrad_paths_begin(&paths, count);
     work->triangle = paths.back;

@@ -136,8 +136,7 @@ static void bundle_cross_faces(const fibrad_furnace *f, fibrad_furnace_tally *ta
         uint32_t b = (a + 1) % 3, c = (a + 2) % 3;
         double interval = 1 / fibrad_abs(speed[a]), t = (from - r->at[a]) / speed[a];
         double weight = r->weight * fibrad_exp(-absorption * t), decay = fibrad_exp(-absorption * interval);
-        double cosine = fibrad_abs(r->direction[a]);
-        double at_b = r->at[b] + speed[b] * t, at_c = r->at[c] + speed[c] * t;
+        double cosine = fibrad_abs(r->direction[a]), at_b = r->at[b] + speed[b] * t, at_c = r->at[c] + speed[c] * t;
         double step_b = speed[b] * interval, step_c = speed[c] * interval;
         const size_t *stride = f->face_stride[a];
         size_t plane = (size_t)(int64_t)from * stride[a];

@@ -133,9 +133,8 @@ int fibrad_furnace_init(fibrad_furnace **furnace, void *memory, size_t size, con
     furnace_find_symmetries(f);
     furnace_fill(f->at.e, f->cells, f->reference);
     furnace_fill(f->traced, f->cells, f->reference);
-    for (int a = 0; a < 3; a++) {
+    for (int a = 0; a < 3; a++)
         for (int g = 0; g < 2; g++) furnace_fill(f->at.flux[a][g], f->faces[a], f->reference);
-    }
     fibrad_furnace_balance(f);
     *furnace = f;
     return fibrad_furnace_theta(f, 2.0 / 3);

@@ -9,9 +9,8 @@ static fibrad_furnace_tally *tally_lay_out(fibrad_arena *arena, const fibrad_fur
     fibrad_furnace_tally count = {0}, *t = tally != NULL ? tally : &count;
     fibrad_copy(t->cells, f->config.cells, sizeof t->cells);
     size_t head = arena->used;
-    for (uint32_t a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++)
         for (int g = 0; g < 2; g++) t->moment[a][g] = fibrad_arena_take(arena, f->faces[a], sizeof *t->moment[a][g]);
-    }
     t->path = fibrad_arena_take(arena, f->cells, sizeof *t->path);
     t->absorbed = fibrad_arena_take(arena, f->sources - f->cells, sizeof *t->absorbed);
     t->counts = (int64_t *)(void *)t->moment[0][0];
@@ -40,9 +39,8 @@ int fibrad_furnace_tally_init(fibrad_furnace_tally **tally, void *memory, size_t
 
 int fibrad_furnace_tally_add(fibrad_furnace_tally *to, const fibrad_furnace_tally *from) {
     if (to == NULL || from == NULL || to == from) return FIBRAD_E_ARGUMENT;
-    for (uint32_t a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++)
         if (to->cells[a] != from->cells[a]) return FIBRAD_E_STATE;
-    }
     if (from->series == 0) return FIBRAD_OK;
     if (to->series != 0 && to->series != from->series) return FIBRAD_E_STATE;
     to->series = from->series;
@@ -123,17 +121,15 @@ int fibrad_furnace_estimate(fibrad_furnace *furnace, const fibrad_furnace_tally 
         return FIBRAD_E_ARGUMENT;
     if (scatter != FIBRAD_SCATTER_SIX_FLUX && scatter != FIBRAD_SCATTER_EXACT) return FIBRAD_E_ARGUMENT;
     if (!tally_is_complete(f, tally, FIBRAD_FURNACE_ATTENUATED)) return FIBRAD_E_STATE;
-    for (uint32_t a = 0; a < 3; a++) {
+    for (uint32_t a = 0; a < 3; a++)
         for (int g = 0; g < 2; g++) tally_set_theta(f, tally, a, g, estimator);
-    }
     fibrad_furnace_balance(f);
     for (uint32_t a = 0; a < 3; a++) {
-        for (int g = 0; g < 2; g++) {
+        for (int g = 0; g < 2; g++)
             if (transverse)
                 tally_set_transverse(f, a, g, scatter);
             else
                 fibrad_zero(f->at.transverse[a][g], f->cells * sizeof(double));
-        }
     }
     return FIBRAD_OK;
 }

@@ -6,7 +6,6 @@
  *     apart + resistance times the power that enters,
  *
  * apart being due to light and to other contacts. */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/vector.h"
 #include "heat/solution.h"
@@ -73,8 +72,8 @@ static struct spot find_spot(const fibrad_heat *heat, uint32_t body, uint32_t ot
     enter_at(heat, body, axis, -entering_so_far);
     fibrad_heat_look_in_rings(heat, body, axis, 1, other >= heat->spheres ? FIBRAD_HEAT_EXTRAPOLATION : 0, &mean);
     enter_at(heat, body, axis, entering_so_far);
-    const double less =
-        fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven, work, response);
+    const double less = fibrad_rings_spot(heat->rings, fibrad_min(radius / r, SPOT_LARGEST), eps, uneven,
+                                          fibrad_heat_biot(heat, body), work, response);
     for (uint32_t m = 0; m < FIBRAD_RINGS; m++)
         apart += heat->rings->share[m] * response[m] * (eps * mean.arriving[m] + mean.absorbed[m]);
     spot.apart = apart / slope;

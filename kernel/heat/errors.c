@@ -251,8 +251,7 @@ static few_links few_of_wall(const fibrad_heat *heat, const fibrad_heat_errors *
     double rays = 0;
     for (uint32_t r = sent->first; r < sent->first + sent->count; r++)
         rays += (heat->ray[r].to < fibrad_heat_others(heat) ? 1 : 2) * heat->ray[r].area;
-    const double share = area > 0 ? fibrad_min(1, rays / area) : 0;
-    const double patch = fibrad_min(heat->patch_area, area);
+    const double share = area > 0 ? fibrad_min(1, rays / area) : 0, patch = fibrad_min(heat->patch_area, area);
     return (few_links){share > 0 ? FEW_ON_WALLS * share * errors->dim[1] / (2 * sent->density * patch) : 0,
                        FEW_ON_WALLS * (1 - share) * errors->dim[0] * heat->config.patches / heat->beams};
 }
@@ -266,8 +265,7 @@ static double few_error(const fibrad_heat *heat, const fibrad_heat_errors *error
 /* ---- powers ----------------------------------------------------------------------------------------------------- */
 
 static double own_sample(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
-    const double eps = heat->sources.emissivity[b];
-    const double few = few_error(heat, errors, b);
+    const double eps = heat->sources.emissivity[b], few = few_error(heat, errors, b);
     const double seen = errors->all.area > 0 ? eps * spread_of(heat, b).area / errors->all.area : 0;
     const double sphere = b < heat->spheres ? squared(patch_error(heat, b)) + unseen_error(heat, errors, b) : 0;
     return squared(eps) * sampled_error(heat, errors, b) + sphere + few * squared(heat->solution.power[b]) +
@@ -324,7 +322,7 @@ double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_err
 
 double fibrad_heat_power_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
     const double square = fibrad_heat_radiated_error(heat, errors, b);
-    if (heat->contacts.count == 0 || fibrad_heat_is_free(heat, b)) return fibrad_sqrt(square);
+    if (!heat->contacts.joins || fibrad_heat_is_free(heat, b)) return fibrad_sqrt(square);
     return fibrad_sqrt(square + heat->contacts.supply[b]);
 }
 
@@ -539,5 +537,5 @@ void fibrad_heat_find_errors(const fibrad_heat *heat, fibrad_heat_errors *errors
     find_sent(heat, errors);
     find_pools(heat, errors);
     find_common(heat, errors);
-    if (heat->contacts.count > 0) find_joined_errors(heat, errors);
+    if (heat->contacts.joins) find_joined_errors(heat, errors);
 }

@@ -3,7 +3,6 @@
  * Near a neighbour temperatures differ over lengths much shorter than a patch. So places that face a neighbour are
  * looked at in rings, together with the neighbour (rings/rings.h). Elsewhere the rings are about the hottest or coldest
  * patch, and all light is that of patches. */
-#include "base/constants.h"
 #include "base/vector.h"
 #include "heat/solution.h"
 #include "patches/subdivision.h"
@@ -137,6 +136,7 @@ void fibrad_heat_look_in_rings(const fibrad_heat *heat, uint32_t b, const double
 
 static void put_in_rings(const fibrad_heat *heat, uint32_t b, const fibrad_heat_ringed *mean, fibrad_ringed *sphere) {
     sphere->radius = heat->scene->r[b], sphere->emissivity = heat->sources.emissivity[b];
+    sphere->biot = fibrad_heat_biot(heat, b);
     sphere->unevenness = heat->sources.unevenness[b], sphere->emission = heat->sources.emission[b];
     fibrad_copy(sphere->arriving, mean->arriving, sizeof sphere->arriving);
     fibrad_copy(sphere->absorbed, mean->absorbed, sizeof sphere->absorbed);

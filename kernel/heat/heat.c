@@ -1,14 +1,12 @@
 /* heat.c - lays out a heat problem, moves it to another scene, and has its beams followed. SPDX-License-Identifier: MIT
  */
 #include "base/arena.h"
-#include "base/constants.h"
 #include "base/dispatch.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
 #include "patches/sphere_patch.h"
 #include "heat/sweep.h"
-#include "patches/wall_patch.h"
 #include "sample/direction.h"
 
 #define HEAT_THIN_MAX  2u
@@ -93,7 +91,7 @@ static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_arena_doubles(arena, heat->bodies,
                          (double **const[]){&c->temperature, &c->stiff, &c->supply, &c->load, &c->warming,
                                             &c->direction, &c->gain, &c->error, &c->diagonal, &c->search, &c->product,
-                                            &c->missing, NULL});
+                                            &c->missing, &c->film, &c->gas, NULL});
     c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *c->node);
     c->kind = fibrad_arena_take(arena, heat->bodies, 1);
     c->nodes = heat->bodies;

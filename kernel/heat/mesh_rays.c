@@ -22,8 +22,7 @@ static void close_row(fibrad_heat *heat, uint32_t place, struct row_sum rays) {
         struct row_sum *sum = pencil->body >= heat->rows && seeing == 0 ? &rest : &others;
         sum->all += beams, sum->tilt += pencil->tilt / 32767. * beams;
     }
-    const double left = heat->beams - others.all;
-    const double lacks = -others.tilt / left - rest.tilt / rest.all;
+    const double left = heat->beams - others.all, lacks = -others.tilt / left - rest.tilt / rest.all;
     for (unsigned char *at = begin; at < end && rest.all > 0 && left > 0;
          at += fibrad_heat_pencil_bytes(fibrad_heat_pencil_at(at))) {
         fibrad_heat_pencil *pencil = (void *)at;

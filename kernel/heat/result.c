@@ -1,8 +1,6 @@
 /* result.c - hands out powers, temperatures, and fluxes of triangles. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "heat/errors.h"
 #include "patches/subdivision.h"
-#include "patches/wall_patch.h"
 #include "scene/walls.h"
 
 /* Writes a value that is wanted. */
@@ -132,16 +130,18 @@ static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result 
 static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *errors, fibrad_heat_result *result) {
     const fibrad_contacts *c = &heat->contacts;
     for (uint32_t b = 0; b < heat->spheres; b++) {
-        const double conducted = fibrad_heat_conducted(heat, b);
+        const double conducted = fibrad_heat_conducted(heat, b), convected = fibrad_heat_convected(heat, b);
         result->power[heat->order[b]] = heat->solution.power[b] + conducted;
-        put_wanted(result->conducted, heat->order[b], conducted);
+        put_wanted(result->conducted, heat->order[b], conducted - convected);
+        put_wanted(result->convected, heat->order[b], convected);
         put_wanted(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
     }
     for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t slot = heat->slot[k], b = fibrad_heat_body(heat, slot);
-        const double conducted = fibrad_heat_conducted(heat, b);
+        const double conducted = fibrad_heat_conducted(heat, b), convected = fibrad_heat_convected(heat, b);
         result->wall_power[k] = heat->solution.power[b] + conducted;
-        put_wanted(result->wall_conducted, k, conducted);
+        put_wanted(result->wall_conducted, k, conducted - convected);
+        put_wanted(result->wall_convected, k, convected);
         put_wanted(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
         put_wanted(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
         put_wanted(result->wall_area, k,
@@ -158,6 +158,21 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
     }
 }
 
+/* Hands out what the gas gains. It errs by at most what all temperatures at films err by. By the balance of all powers
+ * it errs by as much as the other powers that are not given. */
+static void read_gas(const fibrad_heat *heat, const fibrad_heat_errors *errors, fibrad_heat_result *result) {
+    const fibrad_contacts *c = &heat->contacts;
+    double most = 0, others = result->surroundings_error * result->surroundings_error;
+    result->gas_power = result->gas_error = 0;
+    if (!c->joins) return;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        result->gas_power -= fibrad_heat_convected(heat, b);
+        most += c->film[b] * c->error[b];
+        if (!fibrad_heat_is_free(heat, b)) others += fibrad_heat_radiated_error(heat, errors, b);
+    }
+    result->gas_error = fibrad_min(most, fibrad_sqrt(others));
+}
+
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     fibrad_heat_errors errors;
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
@@ -171,6 +186,7 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
     read_net_powers(heat, &errors, result);
     read_temperatures(heat, &errors, result);
     result->surroundings_error = fibrad_heat_surroundings_error(heat, &errors);
+    read_gas(heat, &errors, result);
     fibrad_heat_mean_errors(heat, &errors, &result->error_patches, &result->error_beams);
     result->sweeps = heat->solution.sweeps;
     result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;

@@ -59,12 +59,24 @@ static inline double fibrad_heat_absorbs(const fibrad_heat *heat, uint32_t body)
 
 /* Whether a body in contact has an emission that is an unknown beside its radiosities. */
 static inline bool fibrad_heat_is_joined(const fibrad_heat *heat, uint32_t body) {
-    return heat->contacts.count > 0 && heat->contacts.kind[body] == FIBRAD_CONTACT_FREE;
+    return heat->contacts.joins && heat->contacts.kind[body] == FIBRAD_CONTACT_FREE;
 }
 
-/* What a body gains through contacts. */
+/* What a body gains through contacts and its film. */
 static inline double fibrad_heat_conducted(const fibrad_heat *heat, uint32_t body) {
-    return heat->contacts.count > 0 ? heat->contacts.gain[body] : 0;
+    return heat->contacts.joins ? heat->contacts.gain[body] : 0;
+}
+
+/* The part of it that comes from the gas. */
+static inline double fibrad_heat_convected(const fibrad_heat *heat, uint32_t body) {
+    const fibrad_contacts *c = &heat->contacts;
+    return c->joins && c->film[body] > 0 ? c->film[body] * (c->gas[body] - c->temperature[body]) : 0;
+}
+
+/* h R/k of the film of a sphere that conducts: h is the film over the area of the surface. */
+static inline double fibrad_heat_biot(const fibrad_heat *heat, uint32_t sphere) {
+    const double film = heat->contacts.joins ? heat->contacts.film[sphere] : 0;
+    return film > 0 ? film / (4 * FIBRAD_PI * heat->scene->r[sphere] * heat->sources.conductivity[sphere]) : 0;
 }
 
 /* The temperature of an emission, which is relative to that of the surroundings. NaN: the temperature would be below

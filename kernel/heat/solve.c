@@ -181,7 +181,7 @@ static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
  * contacts.missing keeps what is missing in their balances. */
 static void warm_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
-    if (c->count == 0) return;
+    if (!c->joins) return;
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_heat_add_offsets(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -294,7 +294,7 @@ static double light_squares(const fibrad_heat *heat, uint32_t b) {
 static double scale_of_contacts(fibrad_heat *heat, double emission) {
     fibrad_contacts *c = &heat->contacts;
     double sum = 0;
-    if (c->count == 0) return 0;
+    if (!c->joins) return 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const bool joined = fibrad_heat_is_joined(heat, b);
         c->temperature[b] = fibrad_contact_temperature(c, joined ? emission : heat->sources.emission[b]);
@@ -346,7 +346,7 @@ static void heat_by_light(fibrad_heat *heat) {
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = heat->contacts.count > 0 && heat->contacts.anchored, radiates = false;
+    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         held = held || emitting(heat, b) > 0;
         radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
@@ -357,7 +357,7 @@ static bool solvable(fibrad_heat *heat) {
         sum += light, sizes += light;
     }
     heat->sources.free_level = !held;
-    if (heat->contacts.count > 0) return held || !radiates;
+    if (heat->contacts.joins) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -410,7 +410,7 @@ static void send_means(fibrad_heat *heat) {
  * radiation as if all that a body sees had its emission of now. */
 static void guess_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
-    if (c->count == 0 || !c->afresh) return;
+    if (!c->joins || !c->afresh) return;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
         c->stiff[b] = stiffness_of_joined(heat, b);
@@ -463,8 +463,9 @@ static double extrapolated_emission(const fibrad_heat *heat, uint32_t b) {
            FIBRAD_HEAT_EXTRAPOLATION * (heat->sources.emission[b] - heat->solution.coarse_emission[b]);
 }
 
-/* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. */
-static void set_balances(fibrad_heat *heat) {
+/* Sets up the balances of joined bodies with the radiation that arrives, extrapolated. `more` arrives besides, by
+ * emissivity times area. area: the sum of these. */
+static void set_balances(fibrad_heat *heat, double more, double area) {
     fibrad_contacts *c = &heat->contacts;
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     fibrad_heat_add_offsets(heat, c->supply);
@@ -474,30 +475,69 @@ static void set_balances(fibrad_heat *heat) {
             fibrad_contact_temperature(c, fibrad_heat_is_free(heat, b) ? emission : heat->sources.emission[b]);
         if (!fibrad_heat_is_joined(heat, b)) continue;
         c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + (c->stiff[b] - storage) * emission;
+        const double emits = c->stiff[b] - storage;
+        c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + emits * emission;
+        if (more != 0) c->supply[b] += more * (emits / area);
     }
 }
 
-/* Finds the temperatures that balance powers, radiation and contacts to rounding, and what contacts conduct. What
- * joined bodies then gain less by radiation goes to the others that emit, by emissivity times area. */
-static void finish_contacts(fibrad_heat *heat) {
+/* What a joined body gains by radiation at the temperature that was found. */
+static double radiated_by_joined(const fibrad_heat *heat, uint32_t b) {
+    const fibrad_contacts *c = &heat->contacts;
+    const double emits = c->stiff[b] - heat->sources.storage[b];
+    return c->supply[b] - c->gain[b] - heat->sources.given_power[b] -
+           emits * fibrad_contact_emission(c, c->temperature[b]);
+}
+
+/* Finds the temperatures that balance powers, radiation and contacts to rounding. Returns how much less joined bodies
+ * then gain by radiation. */
+static double balance_joined(fibrad_heat *heat, double more, double area) {
     fibrad_contacts *c = &heat->contacts;
-    double left = 0, weights = 0;
-    set_balances(heat);
+    double left = 0;
+    set_balances(heat, more, area);
     fibrad_contact_find(c, FOUND);
     fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
     fibrad_heat_add_offsets(heat, c->gain);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (fibrad_heat_is_joined(heat, b)) left += heat->solution.power[b] - radiated_by_joined(heat, b);
+    return left;
+}
+
+/* If no other body takes what is left, the level of the temperatures is not quite right: finds how much more joined
+ * bodies must receive, so that all powers by radiation add up to 0. missed: what they add up to before that. In the
+ * level the problem is nearly linear. */
+#define LEVEL_STEPS 12
+static void find_level(fibrad_heat *heat, double left, double missed, double area, double powers) {
+    double more = left - missed, last = 0, before = left - missed;
+    for (int step = 0; step < LEVEL_STEPS && fibrad_abs(before) > FOUND * powers; step++) {
+        const double now = balance_joined(heat, more, area) - missed, slope = (now - before) / (more - last);
+        if (!(slope < 0)) return;
+        last = more, before = now, more -= now / slope;
+    }
+}
+
+/* Finds the temperatures of joined bodies, and what contacts conduct. What joined bodies then gain less by radiation
+ * goes to the others that emit, by emissivity times area. */
+static void finish_contacts(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    double weights = 0, joined = 0, powers = 0, missed = 0;
+    const double left = balance_joined(heat, 0, 0);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
-        if (!fibrad_heat_is_joined(heat, b)) continue;
-        const double t = c->temperature[b], emits = c->stiff[b] - heat->sources.storage[b];
-        const double power =
-            c->supply[b] - c->gain[b] - heat->sources.given_power[b] - emits * fibrad_contact_emission(c, t);
-        left += heat->solution.power[b] - power, heat->solution.power[b] = power;
-        heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
+        if (fibrad_heat_is_joined(heat, b)) joined += c->stiff[b] - heat->sources.storage[b];
+        missed += heat->solution.power[b];
+        powers += fibrad_abs(heat->solution.power[b]) + fibrad_abs(heat->sources.given_power[b]);
     }
-    for (uint32_t b = 0; b < heat->bodies && weights > 0; b++)
-        if (!fibrad_heat_is_joined(heat, b)) heat->solution.power[b] += left * (emitting(heat, b) / weights);
+    if (weights == 0 && joined > 0) find_level(heat, left, missed, joined, powers);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        if (fibrad_heat_is_joined(heat, b)) {
+            const double t = c->temperature[b];
+            heat->solution.power[b] = radiated_by_joined(heat, b);
+            heat->sources.temperature[b] = t >= 0 ? t : __builtin_nan("");
+        } else if (weights > 0) {
+            heat->solution.power[b] += left * (emitting(heat, b) / weights);
+        }
+    }
     fibrad_contact_gains(c, c->temperature, c->gain);
 }
 
@@ -523,7 +563,7 @@ static void finish_powers(fibrad_heat *heat) {
         if (fibrad_heat_is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
-    if (heat->contacts.count > 0) finish_contacts(heat);
+    if (heat->contacts.joins) finish_contacts(heat);
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
     send_means(heat);
 }
@@ -665,7 +705,7 @@ static void turn_direction(fibrad_heat *heat, double keep) {
         heat->solution.direction[a] = heat->solution.source[a] + (keep != 0 ? keep * heat->solution.direction[a] : 0);
         heat->solution.source[a] = heat->solution.direction[a];
     }
-    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.joins; b++)
         heat->contacts.direction[b] = heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
 }
 
@@ -758,7 +798,7 @@ static double product_with_direction(const fibrad_heat *heat, const double *z, c
                : fibrad_heat_is_joined(heat, b) ? joined_product(heat, b, z, warmed[b], product)
                : fibrad_heat_is_free(heat, b)   ? free_product(heat, b, z, product)
                                                 : given_product(heat, b, z, product);
-    if (heat->contacts.count > 0) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
+    if (heat->contacts.joins) sum += fibrad_contact_product(&heat->contacts, warmed, heat->contacts.direction);
     return sum;
 }
 
@@ -773,7 +813,7 @@ static void advance_radiosities(fibrad_heat *heat, const double *product) {
         heat->solution.radiosity[a] += length * heat->solution.direction[a];
         heat->solution.net[a] += length * product[a];
     }
-    for (uint32_t b = 0; b < heat->bodies && heat->contacts.count > 0; b++)
+    for (uint32_t b = 0; b < heat->bodies && heat->contacts.joins; b++)
         if (fibrad_heat_is_joined(heat, b)) heat->sources.emission[b] += length * heat->contacts.direction[b];
 }
 
@@ -805,7 +845,7 @@ static double along_last(const fibrad_heat *heat) {
  * one, and nothing is kept. Sets the slope along the direction. */
 #define KEPT_MOST 4.0
 static double kept_of_direction(fibrad_heat *heat, double ratio, const double *product) {
-    if (heat->contacts.count == 0 || heat->sources.conducts) return ratio;
+    if (!heat->contacts.joins || heat->sources.conducts) return ratio;
     if (!(heat->solution.curvature > 0)) return 0;
     const double overlap = product_with_direction(heat, heat->solution.source, heat->contacts.warming, product);
     const double keep = -overlap / heat->solution.curvature, along = heat->solution.slope + keep * along_last(heat);

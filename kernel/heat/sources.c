@@ -15,8 +15,8 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
 }
 
 /* Contacts pass on what is small beside the flows that they carry, so their balances do not close that far. */
-static double default_tolerance(const fibrad_heat *heat, const fibrad_heat_sources *sources, bool unknown) {
-    if (heat->spheres <= FEW_SPHERES && sources->contacts == 0) return FEW_TOLERANCE;
+static double default_tolerance(const fibrad_heat *heat, bool unknown) {
+    if (heat->spheres <= FEW_SPHERES && !heat->contacts.joins) return FEW_TOLERANCE;
     return unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
 }
 
@@ -100,6 +100,19 @@ static bool is_endless_unknown(const fibrad_heat *heat, const fibrad_heat_source
     return slot < FIBRAD_WALLS && heat->wall[slot].unbounded && source.emissivity > 0 && !is_given(source.temperature);
 }
 
+/* The film of a sphere or a wall, by the caller's number, and the temperature of its gas. */
+typedef struct film_data {
+    double conductance, gas;
+} film_data;
+
+static film_data film_of(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t end) {
+    const bool sphere = end < heat->spheres;
+    const uint32_t k = sphere ? end : end - heat->spheres;
+    const double *film = sphere ? s->film : s->wall_film, *gas = sphere ? s->gas : s->wall_gas;
+    if (film == NULL || film[k] == 0) return (film_data){0, 0};
+    return (film_data){film[k], gas != NULL ? gas[k] : __builtin_nan("")};
+}
+
 /* The reason why a contact is not valid. */
 static int contact_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t k) {
     const uint32_t ends = heat->spheres + heat->given_walls;
@@ -116,12 +129,27 @@ static void name_end(const fibrad_heat *heat, uint32_t end, fibrad_fault *fault)
         fault->wall = end - heat->spheres + 1;
 }
 
-/* Checks the contacts of the sources, and keeps them in heat->checked. */
+/* Checks the films of the sources, and marks what has one. */
+static void check_films(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
+    fibrad_contacts *c = heat->checked;
+    for (uint32_t k = 0; k < heat->spheres + heat->given_walls && fault->why == FIBRAD_WHY_UNSAID; k++) {
+        const film_data film = film_of(heat, s, k);
+        if (film.conductance == 0) continue;
+        if (!(film.conductance > 0 && film.conductance <= FIBRAD_CONDUCTANCE_MAX && is_temperature(film.gas))) {
+            fault->why = FIBRAD_WHY_FILM;
+            name_end(heat, k, fault);
+        }
+        c->kind[c->node[k]] = FIBRAD_CONTACT_GIVEN;
+    }
+}
+
+/* Checks contacts and films of the sources, and keeps them in heat->checked. */
 static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
     fibrad_contacts *c = heat->checked;
     c->count = 0;
-    if (s->contacts == 0 || fault->why != FIBRAD_WHY_UNSAID) return;
-    if (s->contact_first == NULL || s->contact_second == NULL || s->conductance == NULL) {
+    c->joins = fault->why == FIBRAD_WHY_UNSAID && (s->contacts > 0 || s->film != NULL || s->wall_film != NULL);
+    if (!c->joins) return;
+    if (s->contacts > 0 && (s->contact_first == NULL || s->contact_second == NULL || s->conductance == NULL)) {
         fault->why = FIBRAD_WHY_MISSING;
         return;
     }
@@ -136,11 +164,12 @@ static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s
     for (uint32_t b = 0; b < heat->spheres; b++) c->node[heat->order[b]] = b;
     for (uint32_t k = 0; k < heat->given_walls; k++) c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
     fibrad_contact_mark(c);
+    check_films(heat, s, fault);
 }
 
 /* Whether a sphere or a wall, by the caller's number, has contacts. */
 static bool touches(const fibrad_heat *heat, uint32_t end) {
-    return heat->checked->count > 0 && heat->checked->kind[heat->checked->node[end]] != FIBRAD_CONTACT_NONE;
+    return heat->checked->joins && heat->checked->kind[heat->checked->node[end]] != FIBRAD_CONTACT_NONE;
 }
 
 /* Whether a wall has one temperature, given or to be found. */
@@ -195,7 +224,8 @@ static void check_components(const fibrad_heat *heat, const fibrad_heat_sources 
         if (of_end(heat, s, k).emissivity > 0) fibrad_contact_join(&parts, c->node[k], all);
     for (uint32_t k = 0; k < ends; k++) {
         const radiator source = of_end(heat, s, k);
-        if (touches(heat, k) && (is_given(source.temperature) || source.storage > 0))
+        if (touches(heat, k) &&
+            (is_given(source.temperature) || source.storage > 0 || film_of(heat, s, k).conductance > 0))
             parts.anchored[fibrad_contact_root(&parts, c->node[k])] = 1;
     }
     const uint32_t radiating = fibrad_contact_root(&parts, all);
@@ -223,7 +253,7 @@ int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fib
         found.why = wall_why(heat, s, b);
         if (found.why != FIBRAD_WHY_UNSAID) found.wall = b + 1;
     }
-    if (found.why == FIBRAD_WHY_UNSAID && s->contacts > 0) check_components(heat, s, &found);
+    if (found.why == FIBRAD_WHY_UNSAID && heat->checked->joins) check_components(heat, s, &found);
     if (fault != NULL) *fault = found;
     if (found.why == FIBRAD_WHY_UNSAID) return FIBRAD_OK;
     return found.why == FIBRAD_WHY_ENDLESS ? FIBRAD_E_UNSUPPORTED
@@ -303,7 +333,7 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
 
 /* Whether a body has contacts in the solution that begins. */
 static bool in_contact(const fibrad_heat *heat, uint32_t b) {
-    return heat->contacts.count > 0 && heat->contacts.kind[b] != FIBRAD_CONTACT_NONE;
+    return heat->contacts.joins && heat->contacts.kind[b] != FIBRAD_CONTACT_NONE;
 }
 
 /* The emission of a body if it is given. Otherwise the emission with which the search begins: that of its reference, of
@@ -319,12 +349,11 @@ static double first_emission(const fibrad_heat *heat, const fibrad_heat_sources 
 /* Sets emissivity and emission of a body. The radiosities of an earlier solution are shifted by the change of emission.
  * Their detail is taken off, since the coarser level comes first. */
 static void set_emission(fibrad_heat *heat, uint32_t b, double eps, double emission) {
-    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
+    for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         if (heat->solution.warm && (eps < 1 || fibrad_heat_conducts(heat, b)))
             heat->solution.radiosity[a] += emission - heat->sources.emission[b] - heat->solution.detail[a];
         else
             heat->solution.radiosity[a] = emission, heat->solution.detail[a] = 0;
-    }
     heat->sources.emissivity[b] = eps, heat->sources.emission[b] = emission;
     heat->sources.given_power[b] = 0, heat->sources.storage[b] = -1;
 }
@@ -408,15 +437,20 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
         heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_FIRST_TOLERANCE : 0;
 }
 
-/* Takes over the contacts that were checked. */
-static void begin_contacts(fibrad_heat *heat) {
+/* Takes over the contacts and films that were checked. */
+static void begin_contacts(fibrad_heat *heat, const fibrad_heat_sources *s) {
     fibrad_contacts *c = &heat->contacts, *checked = heat->checked;
-    c->count = checked->count;
-    if (c->count == 0) return;
+    c->count = checked->count, c->joins = checked->joins;
+    if (!c->joins) return;
     c->first = checked->first, c->second = checked->second, c->conductance = checked->conductance;
     c->sigma = checked->sigma, c->zero = checked->zero, c->anchored = checked->anchored;
     fibrad_copy(c->node, checked->node, (heat->spheres + heat->given_walls) * sizeof *c->node);
     fibrad_copy(c->kind, checked->kind, heat->bodies);
+    fibrad_zero(c->film, heat->bodies * sizeof *c->film);
+    for (uint32_t k = 0; k < heat->spheres + heat->given_walls; k++) {
+        const film_data film = film_of(heat, s, k);
+        c->film[c->node[k]] = film.conductance, c->gas[c->node[k]] = film.gas;
+    }
 }
 
 /* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */
@@ -442,7 +476,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         if (!heat->traced[task]) return FIBRAD_E_STATE;
     const double middle = middle_emission(heat, sources);
     bool unknown = false;
-    begin_contacts(heat);
+    begin_contacts(heat, sources);
     /* Thermal radiation does not begin with the radiosities of light, nor light with those of thermal radiation. */
     if ((sources->light != NULL) != (heat->sources.light != NULL)) heat->solution.warm = false;
     for (uint32_t b = 0; b < heat->spheres; b++) {
@@ -454,7 +488,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = FIBRAD_HEAT_FOUR;
-    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, sources, unknown);
+    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, unknown);
     heat->sources.settled = heat->sources.tolerance;
     if (unknown)
         heat->sources.settled =

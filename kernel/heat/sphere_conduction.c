@@ -10,6 +10,8 @@
  *
  * If light of the flux a is absorbed besides, w + a is conducted, and w = g (J - a/(2 K l)).
  *
+ * A film takes h (T - T0) out of the pattern besides. Then l + h R/k stands for l, R being the radius.
+ *
  * The mean over a surface has the emissivity eps itself. 1/(2 K) is called unevenness here. It is 0 for a sphere at one
  * temperature. */
 #include "heat/solution.h"
@@ -26,9 +28,9 @@ static const fibrad_harmonics *harmonics_of(const fibrad_heat *heat) {
     return &heat->harmonics[heat->solution.group > 1];
 }
 
-/* The degree of number k of a filter. */
-static double degree_of(const fibrad_heat *heat, uint32_t k) {
-    return k < FIBRAD_HARMONICS_DEGREES ? k : fibrad_harmonics_within(harmonics_of(heat));
+/* The degree of number k of a filter, plus h R/k of a film. */
+static double degree_of(const fibrad_heat *heat, uint32_t b, uint32_t k) {
+    return (k < FIBRAD_HARMONICS_DEGREES ? k : fibrad_harmonics_within(harmonics_of(heat))) + fibrad_heat_biot(heat, b);
 }
 
 /* Filters values on the patches of sphere b. */
@@ -45,7 +47,7 @@ static void find_gains(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) 
     const double eps = heat->sources.emissivity[b];
     by[0] = 0;
     for (uint32_t k = 1; k < NUMBERS; k++) {
-        const double uneven = fibrad_max(heat->sources.unevenness[b], LEAST) / degree_of(heat, k);
+        const double uneven = fibrad_max(heat->sources.unevenness[b], LEAST) / degree_of(heat, b, k);
         by[k] = eps / (1 - eps + eps * uneven);
     }
 }
@@ -141,7 +143,7 @@ double fibrad_heat_pattern_curvature(const fibrad_heat *heat, uint32_t b) {
 /* The ratio of the pattern of emission to the pattern of J, by degree: g/(2 K l). */
 static void find_emitted(const fibrad_heat *heat, uint32_t b, double by[NUMBERS]) {
     find_gains(heat, b, by);
-    for (uint32_t k = 1; k < NUMBERS; k++) by[k] *= heat->sources.unevenness[b] / degree_of(heat, k);
+    for (uint32_t k = 1; k < NUMBERS; k++) by[k] *= heat->sources.unevenness[b] / degree_of(heat, b, k);
 }
 
 double fibrad_heat_entering(const fibrad_heat *heat, uint32_t a) {
@@ -188,7 +190,7 @@ static void add_heated(fibrad_heat *heat, uint32_t b, double *emission) {
     double by[NUMBERS], *more = heat->solution.source;
     find_heated(heat, b, by);
     for (uint32_t k = 1; k < FIBRAD_HARMONICS_WITHIN; k++)
-        by[k] = (1 - by[k]) * heat->sources.unevenness[b] / degree_of(heat, k);
+        by[k] = (1 - by[k]) * heat->sources.unevenness[b] / degree_of(heat, b, k);
     filter_absorbed(heat, b, by, more);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) emission[a] += more[a];
 }

@@ -4,8 +4,7 @@
  * whether light comes along the line. Which of two planes is met first depends on the side of a straight line in u and
  * v. So the cross-section of the light that enters by one plane has straight sides. The same holds for light that ends
  * on one plane. */
-#include "light/footprint.h"
-#include "base/constants.h"
+#include "light/light.h"
 #include "base/elementary.h"
 #include "base/vector.h"
 #include "sample/direction.h"

@@ -6,9 +6,8 @@
  * crosses the line the other way. The integral along a line up to x is c x/2. c is the distance of the line from the
  * middle, and x is counted along the line. So a line needs no list of crossings, only a sum over them. x is limited to
  * the stretch between the neighbouring lines. */
-#include "base/constants.h"
 #include "base/elementary.h"
-#include "light/footprint.h"
+#include "light/light.h"
 
 /* Where an arc leaves the inner side of a line and where it enters it, each at most once. Places are relative to the
  * arc's centre. */
@@ -34,11 +33,10 @@ static arc_crossings crossings_of(const fibrad_open_arc *arc, const double p[2],
     const double root = fibrad_sqrt(fibrad_max(0, arc->r * arc->r - height * height));
     const bool first = n[0] * p[0] + n[1] * p[1] <= height, last = n[0] * q[0] + n[1] * q[1] <= height;
     arc_crossings at = {.begins_inside = first};
-    if (first != last) {
+    if (first != last)
         at.leaves = first, at.enters = last;
-    } else if (first ? height < arc->r : height > -arc->r) {
+    else if (first ? height < arc->r : height > -arc->r)
         at.leaves = at.enters = arc_holds(p, q, n, first ? 1 : -1);
-    }
     /* an arc is counter-clockwise, so it goes outwards at the crossing that comes first along the line */
     for (int a = 0; a < 2; a++) {
         const double t = a == 0 ? -n[1] : n[0];

@@ -1,6 +1,5 @@
 /* light.c - the light that comes to spheres and walls straight from outside. SPDX-License-Identifier: MIT */
 #include "light/light.h"
-#include "base/constants.h"
 
 int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fibrad_fault *fault) {
     if (scene == NULL || light == NULL) return FIBRAD_E_ARGUMENT;

@@ -4,12 +4,10 @@
  * a part of a patch is reflected from where it falls. All light that a body reflects first is known. The rays that
  * leave the body share it out. Where few rays meet a body, patches that are lit wholly reflect without rays. Rays of
  * narrow light go on for some hits, as long as there are many of them on a body. */
-#include "base/constants.h"
 #include "base/random.h"
 #include "base/vector.h"
 #include "patches/subdivision.h"
 #include "patches/problem.h"
-#include "patches/wall_patch.h"
 #include "light/light.h"
 #include "ray/tracer.h"
 #include "scene/walls.h"
@@ -429,15 +427,9 @@ int fibrad_heat_reflect(const fibrad_heat *heat, fibrad_work *work, const fibrad
     if (status != FIBRAD_OK) return status;
     fibrad_footprint *f = fibrad_light_footprint(space);
     double *room = fibrad_light_scratch(space);
-    reflection r = {.heat = heat,
-                    .frame = f->frame,
-                    .first = hits->first,
-                    .flux = light->flux,
-                    .count = room,
-                    .came = room + patches,
-                    .squares = room + 2 * patches,
-                    .left = room + 3 * patches,
-                    .falls = room + (3 + FIBRAD_LIGHT_HITS) * patches};
+    reflection r = {.heat = heat, .frame = f->frame, .first = hits->first, .flux = light->flux, .count = room};
+    r.came = room + patches, r.squares = room + 2 * patches, r.left = room + 3 * patches;
+    r.falls = room + (3 + FIBRAD_LIGHT_HITS) * patches;
     for (uint32_t h = 0; h + 1 < FIBRAD_LIGHT_HITS; h++) r.sent[h] = room + (4 + h) * patches;
     fibrad_zero(room, bytes);
     fibrad_footprint_make(f, heat->scene, light, 0);

@@ -3,7 +3,7 @@
  *
  * For a single window it does not pay to list near spheres. So they are found by a walk through the grid. */
 #include FIBRAD_LANES_HEADER
-#include "light/sunlit_lanes.h"
+#include "light/light.h"
 #include "row/mesh_share_lanes.h"
 #include "row/window_lanes.h"
 #include "window/points_lanes.h"

@@ -1,6 +1,5 @@
 /* unshadowed.c - the part of a window that no triangle hides from the light. SPDX-License-Identifier: MIT */
-#include "light/unshadowed.h"
-#include "base/constants.h"
+#include "light/light.h"
 #include "base/vector.h"
 
 #define NEXT  1e-12 /* a place is next to a line */

@@ -10,7 +10,6 @@
 #define FIBRAD_MASK_MASKS_H
 
 #include "base/arena.h"
-#include "base/port.h"
 #include "base/random.h"
 
 #define FIBRAD_MASK_WORDS_MAX  4u   /* words of a chord */

@@ -5,7 +5,6 @@
  * the total of each wall. First the shares among walls are brought to a total between both, weighted by their
  * errors. Then all rows are brought to 1 together, X_pq u_p u_q, where walls are rows as spheres are.
  * docs/methods.md section 16. */
-#include "base/constants.h"
 #include "base/linear.h"
 #include "matrix/matrix.h"
 

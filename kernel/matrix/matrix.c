@@ -405,17 +405,9 @@ int fibrad_matrix_close(fibrad_matrix *m) {
 int fibrad_matrix_read(const fibrad_matrix *m, fibrad_factors *factors) {
     if (m == NULL || factors == NULL) return FIBRAD_E_ARGUMENT;
     if (!m->closed) return FIBRAD_E_STATE;
-    *factors = (fibrad_factors){.n = m->result.n,
-                                .walls = m->walls,
-                                .start = m->result.start,
-                                .col = m->result.col,
-                                .f = m->result.f,
-                                .escaped = m->escaped,
-                                .beyond = m->beyond,
-                                .error = m->error,
-                                .wall = m->wall,
-                                .changed = m->changed,
-                                .changed_row = m->changed_row};
+    *factors = (fibrad_factors){.n = m->result.n, .walls = m->walls, .start = m->result.start, .col = m->result.col};
+    factors->f = m->result.f, factors->escaped = m->escaped, factors->beyond = m->beyond, factors->error = m->error;
+    factors->wall = m->wall, factors->changed = m->changed, factors->changed_row = m->changed_row;
     if (!m->enclosed) return FIBRAD_OK;
     factors->wall_wall = m->between;
     factors->wall_escaped = m->wall_escaped;

@@ -1,5 +1,5 @@
 /* mesh_patch.c - cuts triangles into patches, and joins small ones. SPDX-License-Identifier: MIT */
-#include "mesh/mesh_patch.h"
+#include "mesh/mesh.h"
 
 #define HALVINGS_MAX 30u
 #define FACING       0.7  /* least cosine between the normals of sides that share a patch */

@@ -34,8 +34,6 @@ static const double weight[NODES] = {
     0.16635079170396431,    0.19369790800517065,    0.17789548248976863,    0.12191628197717333,
     0.057787721995975301,   0.016594018536865064,   0.0021032672879675493,  3.569535250773377e-05};
 
-static const double pi = 3.14159265358979323846;
-
 /* The sum of LANES interleaved partial sums. All compilers and vector lengths add in the same order. */
 static double fold(const double sum[LANES]) { return (sum[0] + sum[2]) + (sum[1] + sum[3]); }
 
@@ -60,9 +58,8 @@ static double mean_overlapping(double e, double q) {
  * 2 (atan t - t) + 2 t^3 (3 + t^2)/(1 + t^2)^2 with atan t = 4 atan u, u = tan(a/8) <= 0.2. So no digits cancel in a
  * thin segment. */
 static double lens_segment(double t) {
-    if (t > 1) return pi - lens_segment(1 / t);
-    double half = t / (1 + fibrad_sqrt(1 + t * t));
-    double u = half / (1 + fibrad_sqrt(1 + half * half));
+    if (t > 1) return FIBRAD_PI - lens_segment(1 / t);
+    double half = t / (1 + fibrad_sqrt(1 + t * t)), u = half / (1 + fibrad_sqrt(1 + half * half));
     double v = u * u, tail = 0; /* atan u = u + u^3 tail */
     for (int n = 25; n >= 3; n -= 2) tail = tail * -v - 1.0 / n;
     double excess = 4 * u * v * (tail - (5 - v) / (1 - v * (6 - v))); /* atan t - t */
@@ -81,15 +78,13 @@ static double lens_segment(double t) {
  * formulas of the triangle R, r, d. */
 static double exchange_overlapping(double R, double r, double gap) {
     double a = 2 * R + gap, b = 2 * r + gap, c = a + 2 * r, g = -gap; /* all > 0 */
-    double d = R - r + b;
-    double w2 = a / d * (b / d), w = fibrad_sqrt(w2);
+    double d = R - r + b, w2 = a / d * (b / d), w = fibrad_sqrt(w2);
     double lens =
         R / r * (R / r * lens_segment(fibrad_sqrt(g / a * (b / c)))) + lens_segment(fibrad_sqrt(g / b * (a / c)));
-    double even = R / d * (R / d) * lens_segment(fibrad_sqrt(a / g * (b / c)));
-    double chord = d / r * w2;
+    double even = R / d * (R / d) * lens_segment(fibrad_sqrt(a / g * (b / c))), chord = d / r * w2;
     double e = g / a * fibrad_min(c / b, 1e300); /* for larger ratios the chord is 0 */
-    double odd = pi / 16 * chord * chord * w * mean_overlapping(e, w2);
-    return (lens + (even - odd)) / (2 * pi);
+    double odd = FIBRAD_PI / 16 * chord * chord * w * mean_overlapping(e, w2);
+    return (lens + (even - odd)) / (2 * FIBRAD_PI);
 }
 
 /* Radii within these bounds leave room for sums and ratios. */
@@ -103,8 +98,7 @@ int fibrad_pair_exact(double r1, double r2, double gap, double *f12) {
         *f12 = r / r1 * (r / r1) * exchange_overlapping(R, r, gap);
         return FIBRAD_OK;
     }
-    double d = R + r + gap;
-    double p = gap / d * (2 * (R / d + r / d) + gap / d), q = 4 * (R / d) * (r / d);
+    double d = R + r + gap, p = gap / d * (2 * (R / d + r / d) + gap / d), q = 4 * (R / d) * (r / d);
     *f12 = r2 / d * (r2 / d) / 2 * mean_apart(p, q);
     return FIBRAD_OK;
 }

@@ -1,10 +1,8 @@
 /* free_pair.c - finds pairs of spheres that nothing can come between. SPDX-License-Identifier: MIT */
 #include "pair/free_pair.h"
-#include "base/constants.h"
 #include "base/random.h"
 #include "base/vector.h"
 #include "scene/grid_walk.h"
-#include "scene/walls.h"
 
 /* In scenes with up to this many spheres all pairs are tried. */
 #define FEW_SPHERES 256u
@@ -207,12 +205,11 @@ static uint32_t try_near(pair_search *search, double distance, bool count) {
         fibrad_walk walk;
         fibrad_walk_about(&walk, scene, &scene->level[l], work->centre, work->centre, distance);
         while (fibrad_walk_next(&walk))
-            for (uint32_t j = walk.begin; j < walk.end; j++) {
+            for (uint32_t j = walk.begin; j < walk.end; j++)
                 if (count)
                     near += square_between(work, j) * (work->unit * work->unit) <= distance * distance;
                 else
                     try_sphere(search, j, false);
-            }
     }
     return near;
 }
@@ -335,8 +332,7 @@ void fibrad_weigh_halves(const fibrad_workspace *work, fibrad_row *row) {
     if (work->windows > SOME_WINDOWS * (far * far)) return; /* lines end before they come to such spheres */
     for (uint32_t k = 0; k < row->length; k++) {
         const uint32_t other = scene->place[row->col[k]];
-        const double square = square_between(work, other);
-        const double windows = 2 * windows_meeting(work, other, square);
+        const double square = square_between(work, other), windows = 2 * windows_meeting(work, other, square);
         row->half[k] *= (float)fibrad_sqrt(1 + RARE_ERROR / (1 + windows * windows));
     }
 }

@@ -1,5 +1,4 @@
 /* harmonics.c - spherical harmonics on the patches of a sphere. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "patches/harmonics.h"
 #include "patches/sphere_patch.h"
 
@@ -176,8 +175,7 @@ static void transform(double *value, uint32_t orbits) {
 
 /* Filters one kind. Returns the product of what was and what is. */
 static double filter_kind(const fibrad_harmonics *h, uint32_t kind, const double *by, double *value) {
-    const double *harmonic = h->value + (size_t)kind * h->orbits * h->many;
-    const double rest = by[bits_of(kind) + 2 * h->shells];
+    const double *harmonic = h->value + (size_t)kind * h->orbits * h->many, rest = by[bits_of(kind) + 2 * h->shells];
     double part[MOST] = {0}, product = 0;
     for (uint32_t o = 0; o < h->orbits; o++)
         for (uint32_t q = 0; q < h->many; q++) part[q] += harmonic[o * h->many + q] * value[o];

@@ -7,7 +7,6 @@
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
 #include "patches/sphere_patch.h"
-#include "patches/wall_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"
@@ -58,8 +57,7 @@ static void number_patches_of(struct hit_window *p, const double frame[9], uint3
 /* Counts a beam of window k that meets a fine patch. Returns the beam. */
 static fibrad_heat_beam fine_beam(const fibrad_heat *heat, fibrad_workspace *work, uint32_t k, uint16_t from,
                                   uint32_t fine) {
-    const uint32_t row = fibrad_heat_row_of_fine(heat, fine);
-    const uint32_t entry = fibrad_entries_of(&work->entries, row);
+    const uint32_t row = fibrad_heat_row_of_fine(heat, fine), entry = fibrad_entries_of(&work->entries, row);
     fibrad_entries_add(&work->entries, entry, k, 1);
     return (fibrad_heat_beam){entry, from,
                               (uint16_t)(fine - FIBRAD_HEAT_FOUR * heat->division.fine[row - heat->spheres].first)};
@@ -123,8 +121,7 @@ static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, cons
         vf u = vf_set1((float)work->disc.u[k]), v = vf_set1((float)work->disc.v[k]), square = vf_set1((float)(r * r));
         uint64_t hidden = 0;
         for (uint32_t lane = 0; lane < HIT_POINTS; lane += VF_LANES) {
-            vf dx = vf_load(x + lane) - u;
-            vf dy = vf_load(y + lane) - v;
+            vf dx = vf_load(x + lane) - u, dy = vf_load(y + lane) - v;
             hidden |= (uint64_t)vf_lt_bits(dx * dx + dy * dy, square) << lane;
         }
         hidden &= left;
@@ -151,8 +148,7 @@ static void find_hit_normals(const fibrad_workspace *work, const float *x, const
     }
     for (uint32_t k = p->count; k % VD_LANES != 0; k++) p->u[k] = p->v[k] = 0;
     for (uint32_t k = 0; k < p->count; k += VD_LANES) {
-        vd u = vd_load(p->u + k), v = vd_load(p->v + k);
-        vd square = vd_max(vd_set1(0), 1 - (u * u + v * v));
+        vd u = vd_load(p->u + k), v = vd_load(p->v + k), square = vd_max(vd_set1(0), 1 - (u * u + v * v));
         vd_store(p->w + k, 0 - vd_sqrt(square));
     }
 }

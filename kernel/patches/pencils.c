@@ -5,9 +5,7 @@
  * where on the bodies light leaves and arrives. Each of them stands for an equal number of beams. */
 #include "patches/subdivision.h"
 #include "patches/pencils.h"
-#include "patches/wall_patch.h"
 #include "base/arena.h"
-#include "base/constants.h"
 #include "pair/free_pair.h"
 #include "patches/sphere_patch.h"
 

@@ -15,7 +15,7 @@
 #include "base/sobol.h"
 #include "contact/contact.h"
 #include "patches/harmonics.h"
-#include "mesh/mesh_patch.h"
+#include "mesh/mesh.h"
 #include "rings/rings.h"
 #include "patches/sphere_patch.h"
 #include "scene/scene.h"

@@ -1,9 +1,8 @@
 /* wall_patch.c - the patches of walls and meshes, and the rays that leave them. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "base/elementary.h"
 #include "base/random.h"
 #include "base/vector.h"
-#include "patches/wall_patch.h"
+#include "patches/subdivision.h"
 #include "scene/walls.h"
 
 /* Patches of walls are about as large as those of spheres. Their number is limited: to FEW times the patches of one

@@ -3,8 +3,8 @@
  * With the irradiation H and the emission E of a ring let v = H - E. It absorbs eps v and sends J = E + (1 - eps) v.
  * The flux eps v and light that was absorbed besides are conducted: E = E0 + S (eps v + a), S being `spread` times the
  * unevenness. H is what arrives from elsewhere plus the factors to the rings of the other sphere times their J. This is
- * a linear system in v of both spheres. */
-#include "base/constants.h"
+ * a linear system in v of both spheres. A film takes away the part B of the flux that E - E0 would have in degree 1, B
+ * being h R/k: S (1 + B S)^-1 stands for S. */
 #include "base/elementary.h"
 #include "base/linear.h"
 #include "rings/rings.h"
@@ -160,11 +160,30 @@ void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double
     for (int i = 0; i < 2; i++) scale_factors(rings, radius, distance, i, work);
 }
 
+/* Finds work->spread[i] of a sphere with a film, by elimination: (1 + B S)^-1 S. */
+static void film_spread(const fibrad_rings *rings, double biot, uint32_t i, fibrad_rings_work *work) {
+    fibrad_copy(work->spread[i], rings->spread, sizeof rings->spread);
+    if (biot == 0) return;
+    for (uint32_t k = 0; k < RINGS; k++)
+        for (uint32_t m = 0; m < RINGS; m++) work->row[k][m] = biot * rings->spread[k][m] + (k == m);
+    for (uint32_t p = 0; p < RINGS; p++) {
+        for (uint32_t k = 0; k < RINGS; k++) {
+            const double part = work->row[k][p] / work->row[p][p];
+            for (uint32_t m = 0; m < RINGS && k != p; m++) {
+                if (m > p) work->row[k][m] -= part * work->row[p][m];
+                work->spread[i][k][m] -= part * work->spread[i][p][m];
+            }
+        }
+    }
+    for (uint32_t k = 0; k < RINGS; k++)
+        for (uint32_t m = 0; m < RINGS; m++) work->spread[i][k][m] /= work->row[k][k];
+}
+
 /* What the emission of ring k has of each v of its sphere. Returns the emission that is known. */
-static double conducted_at(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t k, double more[RINGS]) {
+static double conducted_at(double spreads[RINGS][RINGS], const fibrad_ringed *sphere, uint32_t k, double more[RINGS]) {
     double known = sphere->emission;
     for (uint32_t m = 0; m < RINGS; m++) {
-        const double spread = sphere->unevenness * rings->spread[k][m];
+        const double spread = sphere->unevenness * spreads[k][m];
         more[m] = sphere->emissivity * spread;
         known += spread * sphere->absorbed[m];
     }
@@ -172,18 +191,17 @@ static double conducted_at(const fibrad_rings *rings, const fibrad_ringed *spher
 }
 
 /* The balances of the rings of sphere i: E + v - factors times J of the other sphere = what arrives from elsewhere. */
-static void set_rows(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count, uint32_t i,
-                     fibrad_rings_work *work) {
+static void set_rows(const fibrad_ringed *sphere, uint32_t count, uint32_t i, fibrad_rings_work *work) {
     const uint32_t end = count * RINGS, j = count - 1 - i;
     double spread[RINGS];
     for (uint32_t k = 0; k < RINGS; k++) {
         double *row = work->row[i * RINGS + k];
         fibrad_zero(row, (end + 1) * sizeof *row);
-        row[end] = sphere[i].arriving[k] - conducted_at(rings, &sphere[i], k, row + i * RINGS);
+        row[end] = sphere[i].arriving[k] - conducted_at(work->spread[i], &sphere[i], k, row + i * RINGS);
         row[i * RINGS + k] += 1;
     }
     for (uint32_t m = 0; m < RINGS && count > 1; m++) {
-        const double known = conducted_at(rings, &sphere[j], m, spread);
+        const double known = conducted_at(work->spread[j], &sphere[j], m, spread);
         spread[m] += 1 - sphere[j].emissivity;
         for (uint32_t k = 0; k < RINGS; k++) {
             const double factor = work->factor[i][k][m];
@@ -197,9 +215,10 @@ static void set_rows(const fibrad_rings *rings, const fibrad_ringed *sphere, uin
 double fibrad_rings_top(const fibrad_rings *rings, const fibrad_ringed *sphere, uint32_t count,
                         fibrad_rings_work *work) {
     double spread[RINGS];
-    for (uint32_t i = 0; i < count; i++) set_rows(rings, sphere, count, i, work);
+    for (uint32_t i = 0; i < count; i++) film_spread(rings, sphere[i].biot, i, work);
+    for (uint32_t i = 0; i < count; i++) set_rows(sphere, count, i, work);
     fibrad_solve_linear(count * RINGS, 2 * RINGS + 1, work->row[0]);
-    double top = conducted_at(rings, &sphere[0], 0, spread) - sphere[0].emission;
+    double top = conducted_at(work->spread[0], &sphere[0], 0, spread) - sphere[0].emission;
     for (uint32_t m = 0; m < RINGS; m++) top += spread[m] * work->row[m][count * RINGS];
     return top;
 }
@@ -214,21 +233,23 @@ static double share_of_spot(const fibrad_rings *rings, double size, uint32_t k) 
 
 /* With the flux p of the spot, (1 + eps u S) z = p. The response is u S z, since S is symmetric with shares as weights.
  */
-double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness,
+double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness, double biot,
                          fibrad_rings_work *work, double response[RINGS]) {
     double flux[RINGS], less = 0;
+    film_spread(rings, biot, 0, work);
     for (uint32_t k = 0; k < RINGS; k++) {
         double *row = work->row[k];
-        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * rings->spread[k][m] + (k == m);
+        for (uint32_t m = 0; m < RINGS; m++) row[m] = emissivity * unevenness * work->spread[0][k][m] + (k == m);
         row[RINGS] = flux[k] = share_of_spot(rings, size, k) / rings->share[k];
     }
     fibrad_solve_linear(RINGS, 2 * RINGS + 1, work->row[0]);
     for (uint32_t k = 0; k < RINGS; k++) {
         response[k] = 0;
         for (uint32_t m = 0; m < RINGS; m++) {
-            const double spread = unevenness * rings->spread[k][m], reached = work->row[m][RINGS];
+            const double spread = unevenness * work->spread[0][k][m], reached = work->row[m][RINGS];
+            const double by_film = unevenness * rings->spread[k][m] - spread;
             response[k] += spread * reached;
-            less += rings->share[k] * flux[k] * spread * (flux[m] - reached);
+            less += rings->share[k] * flux[k] * (spread * (flux[m] - reached) + by_film * flux[m]);
         }
     }
     return less;

@@ -30,6 +30,7 @@ uint32_t fibrad_rings_at(const fibrad_rings *rings, double cosine);
 typedef struct fibrad_ringed {
     double radius, emissivity;
     double unevenness, emission;   /* as of heat/sphere_conduction.c; the mean emission of the surface */
+    double biot;                   /* h R/k of a film */
     double arriving[FIBRAD_RINGS]; /* light per area that does not come from the other sphere */
     double absorbed[FIBRAD_RINGS]; /* light per area that was absorbed besides */
 } fibrad_ringed;
@@ -39,6 +40,7 @@ typedef struct fibrad_rings_work {
     double factor[2][FIBRAD_RINGS][FIBRAD_RINGS]; /* from each ring of a sphere to the rings of the other */
     double facing[2][FIBRAD_RINGS];               /* their sums */
     double row[2 * FIBRAD_RINGS][2 * FIBRAD_RINGS + 1];
+    double spread[2][FIBRAD_RINGS][FIBRAD_RINGS]; /* of each sphere, with its film */
 } fibrad_rings_work;
 
 /* Finds the view factors between the rings of two spheres of these radii. Their sums are exact. How they are shared out
@@ -47,10 +49,11 @@ void fibrad_rings_face(const fibrad_rings *rings, const double radius[2], double
 
 /* A spot of one temperature around the axis through which heat enters a sphere.
  *   Input    size: its radius over that of the sphere
+ *            biot: as in fibrad_ringed
  *   Output   response: mean emission of the spot, minus that of the sphere, for one unit of absorbed power over area
  * that is spread in this ring alone, over the share of the ring Result   by how much less the spot emits, for a unit of
- * power over the sphere's area that enters through it, than if the sphere did not radiate */
-double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness,
+ * power over the sphere's area that enters through it, than if the sphere did not radiate and had no film */
+double fibrad_rings_spot(const fibrad_rings *rings, double size, double emissivity, double unevenness, double biot,
                          fibrad_rings_work *work, double response[FIBRAD_RINGS]);
 
 /* The emission on the axis minus the mean emission of sphere[0]. count: 1, or 2 if the spheres face each other. */

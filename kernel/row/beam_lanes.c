@@ -1,7 +1,6 @@
 /* beam_lanes.c - a row of view factors by parallel beams. Compiled once per instruction set.
  * SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
-#include "base/constants.h"
 #include "sample/direction.h"
 #include "row/beam.h"
 #include "pair/free_pair.h"

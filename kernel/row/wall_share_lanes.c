@@ -8,7 +8,6 @@
  * order by its slope. So a wall gets two terms: the open part times its share of the lines, and the slope times the
  * difference between the mean direction of its lines and that of all lines. docs/methods.md section 9. */
 #include FIBRAD_LANES_HEADER
-#include "base/constants.h"
 #include "row/wall_share_lanes.h"
 #include "row/wall_window.h"
 #include "ray/tracer.h"

@@ -1,6 +1,5 @@
 /* rows.c - a collection of rows in one block, fixed or growing. SPDX-License-Identifier: MIT */
 #include "base/arena.h"
-#include "base/reserve.h"
 #include "rows/record.h"
 
 /* Bytes before the first record. */
@@ -52,17 +51,10 @@ void fibrad_rows_commit(fibrad_rows *rows, uint64_t scene, uint32_t walls, const
     rows->lead = lead_of(rows);
     rows->serial++;
     fibrad_record *record = (fibrad_record *)(void *)end_of(rows);
-    *record = (fibrad_record){.sphere = row->sphere,
-                              .length = row->length,
-                              .walls = walls,
-                              .lines = row->half != NULL ? row->lines : 0,
-                              .symmetric = row->symmetric != 0,
-                              .scene = scene,
-                              .escaped = row->escaped,
-                              .beyond = row->beyond,
-                              .error = row->error,
-                              .noise = row->noise,
-                              .shares = row->shares};
+    *record = (fibrad_record){.sphere = row->sphere, .length = row->length, .walls = walls, .scene = scene};
+    record->lines = row->half != NULL ? row->lines : 0, record->symmetric = row->symmetric != 0;
+    record->escaped = row->escaped, record->beyond = row->beyond;
+    record->error = row->error, record->noise = row->noise, record->shares = row->shares;
     uint32_t *col = (uint32_t *)(void *)(row->f + row->length);
     __builtin_memmove(col, row->col, row->length * sizeof *row->col);
     if (record->lines > 0) __builtin_memmove(col + row->length, row->half, row->length * sizeof *row->half);
@@ -86,20 +78,11 @@ int fibrad_rows_read(fibrad_rows *rows, size_t *at, fibrad_row *row) {
     if (record == NULL) return 0;
     unsigned char *own = (unsigned char *)rows->memory.block + lead_of(rows) + begin; /* the record to be written */
     double *wall = (double *)(void *)(own + sizeof *record), *f = wall + record->walls;
-    *row = (fibrad_row){
-        .wall = wall,
-        .f = f,
-        .col = (uint32_t *)(void *)(f + record->length),
-        .sphere = record->sphere,
-        .length = record->length,
-        .escaped = record->escaped,
-        .beyond = record->beyond,
-        .error = record->error,
-        .noise = record->noise,
-        .shares = record->shares,
-        .lines = record->lines,
-        .half = record->lines > 0 ? (float *)(void *)((uint32_t *)(void *)(f + record->length) + record->length) : NULL,
-        .symmetric = record->symmetric != 0};
+    uint32_t *col = (uint32_t *)(void *)(f + record->length);
+    *row = (fibrad_row){.wall = wall, .f = f, .col = col, .sphere = record->sphere, .length = record->length};
+    row->escaped = record->escaped, row->beyond = record->beyond, row->symmetric = record->symmetric != 0;
+    row->error = record->error, row->noise = record->noise, row->shares = record->shares, row->lines = record->lines;
+    if (record->lines > 0) row->half = (float *)(void *)(col + record->length);
     return 1;
 }
 

@@ -17,8 +17,7 @@ static sum two_sum(double a, double b) {
 
 /* Splits x into halves of 26 bits whose products are exact (Veltkamp). */
 static sum halves(double x) {
-    double scaled = 0x8000001p0 * x;
-    double high = scaled - (scaled - x);
+    double scaled = 0x8000001p0 * x, high = scaled - (scaled - x);
     return (sum){high, x - high};
 }
 
@@ -31,8 +30,7 @@ static sum two_product(double a, double b) {
 
 /* a b + c d for numbers of two parts. The result is the true value rounded, but for about one case in 2^40. */
 static double product_sum(sum a, sum b, sum c, sum d) {
-    sum ab = two_product(a.value, b.value), cd = two_product(c.value, d.value);
-    sum total = two_sum(ab.value, cd.value);
+    sum ab = two_product(a.value, b.value), cd = two_product(c.value, d.value), total = two_sum(ab.value, cd.value);
     double rest = (a.value * b.rest + a.rest * b.value) + (c.value * d.rest + c.rest * d.value);
     return total.value + (total.rest + (ab.rest + cd.rest + rest));
 }

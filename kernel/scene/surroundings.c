@@ -1,5 +1,4 @@
 /* surroundings.c - what lies beyond the spheres that a row knows. SPDX-License-Identifier: MIT */
-#include "base/constants.h"
 #include "scene/surroundings.h"
 #include "scene/walls.h"
 

@@ -1,7 +1,6 @@
 /* walls.c - the planes and the cylinder of a scene: checks, hits, normals and areas. SPDX-License-Identifier: MIT */
 #include "scene/walls.h"
 
-#include "base/constants.h"
 #include "base/elementary.h"
 
 #define INFINITE   __builtin_inf()
@@ -76,8 +75,7 @@ int fibrad_walls_check(const fibrad_scene_config *config) {
     bool closed = true, across = false;
     uint32_t walled = 0;
     for (uint32_t axis = 0; axis < 3; axis++) {
-        const fibrad_plane *low = found.plane[fibrad_face(axis, false)];
-        const fibrad_plane *high = found.plane[fibrad_face(axis, true)];
+        const fibrad_plane *low = found.plane[fibrad_face(axis, false)], *high = found.plane[fibrad_face(axis, true)];
         if (low != NULL && high != NULL && !(low->at < high->at)) return FIBRAD_E_ARGUMENT;
         walled += low != NULL || high != NULL;
         across = across || (is_across(&found, axis) && (low != NULL || high != NULL || config->period[axis] > 0));
@@ -224,8 +222,7 @@ uint32_t fibrad_walls_exit(const fibrad_scene *scene, const double origin[3], co
     if (c->radius < INFINITE && across > 0) {
         double from[2];
         from_axis(c, origin, from);
-        const double x = from[0], y = from[1];
-        const double along = x * u + y * v, inside = c->radius * c->radius - (x * x + y * y);
+        const double x = from[0], y = from[1], along = x * u + y * v, inside = c->radius * c->radius - (x * x + y * y);
         const double root = fibrad_sqrt(fibrad_max(0, along * along + across * inside));
         const double t = along > 0 ? inside / (along + root) : (root - along) / across; /* without cancellation */
         if (t < least) least = t, wall = FIBRAD_CYLINDER;

@@ -50,8 +50,7 @@ int fibrad_entries_row(const fibrad_entries *entries, const fibrad_scene *scene,
     uint64_t units[2] = {0, 0};
     double square = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
-        const double exact = entries->exact[k];
-        const double difference = exact > 0 ? 0 : entry_difference(entries, k) * scale;
+        const double exact = entries->exact[k], difference = exact > 0 ? 0 : entry_difference(entries, k) * scale;
         square += difference * difference;
         if (entries->masked) add_square(units, difference * difference);
         if (entries->sphere[k] >= scene->facts.spheres || (entry_sum(entries->part[k]) == 0 && exact == 0)) continue;

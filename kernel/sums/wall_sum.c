@@ -1,6 +1,5 @@
 /* wall_sum.c - solid angles of walls, seen from within, and view factors to walls. SPDX-License-Identifier: MIT */
 #include "sums/wall_sum.h"
-#include "base/constants.h"
 #include "base/elementary.h"
 
 #define HARDLY 1e-4 /* of a window: weight of the prior where hardly any line has met a region */

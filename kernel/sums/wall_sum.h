@@ -4,7 +4,6 @@
 #define FIBRAD_SUMS_WALL_SUM_H
 
 #include "scene/surroundings.h"
-#include "base/elementary.h"
 
 /* The walls and the cutoff in the frame of a sphere: relative to its centre, in units of its radius, by the axes
  * of the cylinder. */

@@ -43,16 +43,13 @@ bool LANED(fibrad_surface_filter)(fibrad_surface_task *task, const fibrad_surfac
     bool hidden = false;
     task->obstacles.n = 0;
     for (uint32_t k = 0; k < all->n; k += VD_LANES) {
-        const vd cx = vd_load(all->x + k) - frame->origin[0];
-        const vd cy = vd_load(all->y + k) - frame->origin[1];
+        const vd cx = vd_load(all->x + k) - frame->origin[0], cy = vd_load(all->y + k) - frame->origin[1];
         const vd cz = vd_load(all->z + k) - frame->origin[2];
         const vd x = dot_row(frame->x, cx, cy, cz), y = dot_row(frame->y, cx, cy, cz);
         const vd z = dot_row(frame->z, cx, cy, cz), r = vd_load(all->r + k) * frame->scale;
-        const vd aside = vd_sqrt(x * x + y * y);
-        const vd slack = SURFACE_MARGIN * (aside + vd_abs(z) + (high + r));
+        const vd aside = vd_sqrt(x * x + y * y), slack = SURFACE_MARGIN * (aside + vd_abs(z) + (high + r));
         const vd wide = r + slack, depth = one - z * sine; /* from the axis to the cone */
-        const vm in_cone = vd_lt(aside * cosine - depth, wide);
-        const vm between = vd_lt(low, z + wide) & vd_lt(z - wide, high);
+        const vm in_cone = vd_lt(aside * cosine - depth, wide), between = vd_lt(low, z + wide) & vd_lt(z - wide, high);
         const vm covers =
             vd_le((aside + slack) * cosine + depth, r * cosine) & vd_le(one, z) & vd_le(z, vd_set1(task->d - task->r2));
         uint32_t valid = vd_lanes_below(all->n - k);
@@ -76,17 +73,14 @@ static bool obstacles_of_node(const fibrad_surface_task *task, double x, double 
     const double tangent2 = fibrad_max(0, far2 - task->r2 * task->r2), tangent = fibrad_sqrt(tangent2);
     const double front = fibrad_sqrt(far2) - task->r2;
     const vd px = vd_set1(x), py = vd_set1(y), pz = vd_set1(z), zero = vd_set1(0), far = vd_set1(far2);
-    const vd ax = zero - px, ay = zero - py, az = vd_set1(axis_z);
-    const vd tt = vd_set1(tangent2), r2 = vd_set1(task->r2);
+    const vd ax = zero - px, ay = zero - py, az = vd_set1(axis_z), tt = vd_set1(tangent2), r2 = vd_set1(task->r2);
     list->n = 0;
     for (uint32_t k = 0; k < all->n; k += VD_LANES) {
         const vd cx = vd_load(all->x + k) - px, cy = vd_load(all->y + k) - py;
         const vd cz = vd_load(all->z + k) - pz, r = vd_load(all->r + k), rr = r * r;
-        const vd cc = dot(cx, cy, cz, cx, cy, cz), power = cc - rr;
-        const vd slack = SURFACE_MARGIN * (cc + far);
+        const vd cc = dot(cx, cy, cz, cx, cy, cz), power = cc - rr, slack = SURFACE_MARGIN * (cc + far);
         const vd axes = dot(cx, cy, cz, ax, ay, az), height = dot(cx, cy, cz, px, py, pz);
-        const vd cosines = vd_sqrt(vd_max(power, zero) * tt), sines = r * r2;
-        const vd extent = tt + 2 * tangent * r;
+        const vd cosines = vd_sqrt(vd_max(power, zero) * tt), sines = r * r2, extent = tt + 2 * tangent * r;
         const vm inside = vd_lt(power, zero);
         const vm apart =
             vd_lt(axes + sines + slack, cosines) | vd_lt(extent + slack, power) | vd_lt(height + r + slack, zero);

@@ -119,10 +119,8 @@ static int surface_compute(const fibrad_scene *scene, fibrad_workspace *work, ui
         return FIBRAD_E_WORK;
     }
     work->extra_owner = 0;
-    fibrad_surface_task task = {.flags = given->rule.flags,
-                                .nodes = given->nodes,
-                                .obstacles = blocker_list(work, count, 0),
-                                .of_node = blocker_list(work, count, 1)};
+    fibrad_surface_task task = {.flags = given->rule.flags, .nodes = given->nodes};
+    task.obstacles = blocker_list(work, count, 0), task.of_node = blocker_list(work, count, 1);
     const fibrad_near *near = &work->near;
     const fibrad_obstacles all = {near->x, near->y, near->z, near->r, (uint32_t)count};
     const fibrad_surface_lanes lanes = fibrad_surface_lanes_of(scene->facts.isa);

@@ -8,7 +8,6 @@
 #define FIBRAD_WINDOW_AREAS_H
 
 #include "base/arena.h"
-#include "base/port.h"
 #include "window/dense.h"
 
 #define FIBRAD_PIECES 48 /* approximate number of pieces that are integrated together */

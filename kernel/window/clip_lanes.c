@@ -14,7 +14,6 @@
  * Clipping fails where rounding decides. So all decisions have a margin far above rounding errors. A window with a
  * decision within its margin is degenerate. The arrangement of circles computes it again. */
 #include FIBRAD_LANES_HEADER
-#include "base/constants.h"
 #include "base/lanes/below.h"
 #include "window/arc_lanes.h"
 #include "window/arrangement_lanes.h"

@@ -4,7 +4,6 @@
 #define FIBRAD_WINDOW_DENSE_H
 
 #include "base/arena.h"
-#include "base/port.h"
 
 #define FIBRAD_DENSE_BLOCK 16u         /* slots for arcs, stored side by side */
 #define FIBRAD_DENSE_NONE  0xffffffffu /* no block, no disc */

@@ -10,7 +10,6 @@
  * Decisions have margins as in clip_lanes.c, but in units of the circles compared, since thousands of small discs
  * make many decisions. */
 #include FIBRAD_LANES_HEADER
-#include "base/constants.h"
 #include "base/lanes/below.h"
 #include "base/sort.h"
 #include "window/arc_lanes.h"

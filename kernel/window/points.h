@@ -2,7 +2,6 @@
 #ifndef FIBRAD_WINDOW_POINTS_H
 #define FIBRAD_WINDOW_POINTS_H
 
-#include "base/port.h"
 #include "sample/tables.h"
 
 /* The points of a window, and which of them no disc has hidden so far. */

@@ -6,7 +6,6 @@
  * memory. */
 #include "workspace/workspace.h"
 #include "base/arena.h"
-#include "base/constants.h"
 #include "base/random.h"
 
 /* The sizes that a packed bed needs. */
@@ -252,8 +251,7 @@ uint32_t fibrad_work_met(const fibrad_workspace *work, const double from[3], con
 
 double fibrad_near_horizon(const fibrad_workspace *work, const double w[3]) {
     double horizon = work->farthest;
-    for (int axis = 0; axis < 3; axis++) {
+    for (int axis = 0; axis < 3; axis++)
         if (w[axis] != 0) horizon = fibrad_min(horizon, work->extent[axis][w[axis] > 0] / fibrad_abs(w[axis]));
-    }
     return horizon;
 }

@@ -9,7 +9,6 @@
 
 #include "sums/row_sum.h"
 #include "sums/wall_sum.h"
-#include "scene/surroundings.h"
 #include "window/areas.h"
 #include "window/discs.h"
 #include "mask/masks.h"

@@ -460,11 +460,8 @@ static int hash_part(const struct scene *s, int isa) {
             const fibrad_beam_rule beam = {
                 .directions = 34, .points = i % 2 ? 64 : 0, .cutoff = cutoff, .turn = i % 3 ? i : 0};
             const fibrad_cast_rule cast = {.rays = 200, .cutoff = cutoff};
-            const fibrad_exchange_rule exchange = {.emissivity = emissivity,
-                                                   .wall_emissivity = wall_emissivity,
-                                                   .paths = 50,
-                                                   .seed = i % 2 ? 77 : 0,
-                                                   .cutoff = cutoff};
+            fibrad_exchange_rule exchange = {.emissivity = emissivity, .wall_emissivity = wall_emissivity, .paths = 50};
+            exchange.seed = i % 2 ? 77 : 0, exchange.cutoff = cutoff;
             for (int method = 0; method < 3; method++) {
                 fibrad_row row = row_here();
                 const int status = method == 0   ? fibrad_beam_row(scene, &work, i, &beam, &row)
@@ -478,12 +475,8 @@ static int hash_part(const struct scene *s, int isa) {
         }
         for (uint32_t i = 0; i < s->n; i++) power[i] = 0;
         for (uint32_t b = 0; b < walls; b++) wall_power[b] = 0, wall_temperature[b] = wall_temperature[wall_of[b]];
-        fibrad_flow flow = {.weight = r,
-                            .emission = temperature,
-                            .wall_emission = wall_temperature,
-                            .surroundings_emission = 1,
-                            .power = power,
-                            .wall_power = wall_power};
+        fibrad_flow flow = {.weight = r, .emission = temperature, .wall_emission = wall_temperature};
+        flow.surroundings_emission = 1, flow.power = power, flow.wall_power = wall_power;
         if (fibrad_rows_flow(&rows, s->n, walls, &flow) != FIBRAD_OK) return 1;
         for (uint32_t i = 0; i < s->n; i++) hash_number(power[i]);
         hash_walls(wall_power);

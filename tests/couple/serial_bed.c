@@ -75,12 +75,8 @@ int main(int count, char **argument) {
         }
         const double floor_emission = sigma * pow(floor_t, 4);
         double floor_power = 0;
-        fibrad_flow flow = {.weight = weight,
-                            .emission = emission,
-                            .wall_emission = &floor_emission,
-                            .surroundings_emission = sigma * pow(300, 4),
-                            .power = power,
-                            .wall_power = &floor_power};
+        fibrad_flow flow = {.weight = weight, .emission = emission, .wall_emission = &floor_emission};
+        flow.surroundings_emission = sigma * pow(300, 4), flow.power = power, flow.wall_power = &floor_power;
         stop_unless(fibrad_rows_flow(&rows, n, 1, &flow));
         for (uint32_t i = 0; i < n; i++) t[i] += power[i] * dt / (2500 * 4 * pi / 3 * r[i] * r[i] * r[i] * 800);
         floor_t += floor_power * dt / capacity;

@@ -11,7 +11,7 @@
 #include <sys/stat.h>
 
 #include "couple/insitu.h"
-#include "couple/ranks/coarse_map.h"
+#include "couple/ranks/ranks.h"
 #include "couple/rows_file.h"
 
 static int rank, ranks, checks, failures;
@@ -343,8 +343,7 @@ static struct rows_file read_rows(const char *name, int of) {
     CHECK(file);
     if (!file) return r;
     CHECK(fread(&r.head, sizeof r.head, 1, file) == 1 && memcmp(r.head.magic, FIBRAD_ROWS_MAGIC, 8) == 0);
-    const size_t n = r.head.rows, entries = r.head.entries;
-    const size_t words = 2 * n + 1 + 2 * entries + n * (8 + r.head.walls);
+    const size_t n = r.head.rows, entries = r.head.entries, words = 2 * n + 1 + 2 * entries + n * (8 + r.head.walls);
     r.word = memory_of(words + 1, sizeof *r.word);
     CHECK(fread(r.word, sizeof *r.word, words + 1, file) == words);
     fclose(file);

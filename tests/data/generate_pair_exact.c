@@ -35,8 +35,7 @@ static void rule(void) {
             z -= p / slope;
         }
         quad u = (1 + z) / 2, gauss = 1 / ((1 - z * z) * slope * slope);
-        quad t = M_PI_2q * expm1q(a * u) / expm1q(a), dt = M_PI_2q * a * expq(a * u) / expm1q(a);
-        quad y = sinq(t) * sinq(t);
+        quad t = M_PI_2q * expm1q(a * u) / expm1q(a), dt = M_PI_2q * a * expq(a * u) / expm1q(a), y = sinq(t) * sinq(t);
         printf("    {");
         print(y, "%.17Qg", ", ");
         print(gauss * dt * 16 / M_PIq * y * (1 - y), "%.17Qg", "},\n");
@@ -71,19 +70,15 @@ static quad panel(const struct pair *g, quad whole, quad near, quad far) {
 }
 
 static quad lens(quad x, quad y, quad d) {
-    quad big = x > y ? x : y, small = x > y ? y : x;
-    quad cb = (d * d + big * big - small * small) / (2 * d * big);
-    quad cs = (d * d + small * small - big * big) / (2 * d * small);
-    quad tb = acosq(cb), ts = acosq(cs);
+    quad big = x > y ? x : y, small = x > y ? y : x, cb = (d * d + big * big - small * small) / (2 * d * big);
+    quad cs = (d * d + small * small - big * big) / (2 * d * small), tb = acosq(cb), ts = acosq(cs);
     return big * big * (tb - sinq(2 * tb) / 2) + small * small * (ts - sinq(2 * ts) / 2);
 }
 
 static quad view_factor(double r1, double r2, double gap) {
     quad x = r1, y = r2, d = x + y + gap, small = x < y ? x : y, big = x < y ? y : x;
-    struct pair g = {.a = (x - y) * (x - y) / (d * d),
-                     .p = gap * (2 * (x + y) + gap) / (d * d),
-                     .w = (2 * small + gap) * (2 * big + gap) / (d * d),
-                     .q = 4 * x * y / (d * d)};
+    struct pair g = {.a = (x - y) * (x - y) / (d * d), .p = gap * (2 * (x + y) + gap) / (d * d)};
+    g.w = (2 * small + gap) * (2 * big + gap) / (d * d), g.q = 4 * x * y / (d * d);
     quad whole = g.p > 0 ? g.q : g.w, split = fabsq(g.p), sum = 0, near = 0;
     /* Panels graded towards the upper end, whose inner length scale is |p|. */
     quad first = split > 0 && split < whole / 8 ? split : whole / 8;

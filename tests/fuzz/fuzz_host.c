@@ -81,16 +81,11 @@ static int factors_of(struct session *s, const fibrad_bed_rule *options, fibrad_
 static void try_factors(struct session *s) {
     unsigned char wanted[SPHERES];
     const uint8_t method = byte() % 8, which = byte();
-    const fibrad_beam_rule beam = {.directions = 8 + byte() % 32,
-                                   .points = method == 1 ? 64 : 0,
-                                   .cutoff = which == 1 ? coordinate() : 0,
-                                   .tolerance = which == 2 ? .05 + share() : 0};
+    fibrad_beam_rule beam = {.directions = 8 + byte() % 32, .points = method == 1 ? 64 : 0};
+    beam.cutoff = which == 1 ? coordinate() : 0, beam.tolerance = which == 2 ? .05 + share() : 0;
     const fibrad_cast_rule cast = {.rays = 1 + number() % 300, .seed = which};
-    const fibrad_exchange_rule grey = {.emissivity = s->emissivity,
-                                       .wall_emissivity = s->wall_emissivity,
-                                       .directions = beam.directions,
-                                       .paths = 1 + byte() % 32,
-                                       .tolerance = which == 3 ? .2 + share() : 0};
+    fibrad_exchange_rule grey = {.emissivity = s->emissivity, .wall_emissivity = s->wall_emissivity};
+    grey.directions = beam.directions, grey.paths = 1 + byte() % 32, grey.tolerance = which == 3 ? .2 + share() : 0;
     fibrad_bed_rule options = {.raw = byte() % 4 == 0, .walls = byte() % 2, .drop = which % 8 == 0 ? share() : 0};
     if (method < 4) options.beam = &beam;
     if (method > 5 || which == 5) options.exchange = &grey; /* two, perhaps */
@@ -190,11 +185,8 @@ static void law(void *context, const double *temperature, const double *wall_tem
 static void try_heat(struct session *s) {
     double power[SPHERES], temperature[SPHERES], wall_power[WALLS], wall_temperature[WALLS], flux[2 * TRIANGLES];
     double power_error[SPHERES], emissivity[SPHERES], wall_emissivity[WALLS];
-    fibrad_heat_result result = {.power = power,
-                                 .temperature = temperature,
-                                 .wall_power = wall_power,
-                                 .wall_temperature = wall_temperature,
-                                 .power_error = power_error};
+    fibrad_heat_result result = {.power = power, .temperature = temperature, .wall_power = wall_power};
+    result.wall_temperature = wall_temperature, result.power_error = power_error;
     fibrad_law follow = {law, s, emissivity, wall_emissivity};
     struct sources all;
     const bool follows = byte() % 4 == 0;
@@ -222,15 +214,10 @@ static void advance(struct session *s, struct sources *all) {
     double before[SPHERES];
     memcpy(before, temperature, sizeof before);
     const uint8_t which = byte();
-    fibrad_span span = {.temperature = temperature,
-                        .capacity = capacity,
-                        .duration = which == 1 ? coordinate() : .1 + which / 64.,
-                        .step = which == 2 ? coordinate() : 0,
-                        .tolerance = 1e-2,
-                        .power = power,
-                        .wall_power = wall_power,
-                        .wall_energy = wall_energy,
-                        .context = s};
+    fibrad_span span = {.temperature = temperature, .capacity = capacity};
+    span.duration = which == 1 ? coordinate() : .1 + which / 64., span.step = which == 2 ? coordinate() : 0;
+    span.tolerance = 1e-2, span.power = power, span.wall_power = wall_power, span.wall_energy = wall_energy;
+    span.context = s;
     fibrad_law follow = {.follow = law, .context = s};
     if (which > 240) span.law = &follow, s->law = which, s->asked = 0;
     if (which == 2 && !(span.step > .01)) span.step = .1;

@@ -171,12 +171,8 @@ static void try_flow(struct session *s) {
     const uint32_t n = s->contents.n, walls = s->contents.config.walls;
     for (uint32_t i = 0; i < n; i++) weight[i] = share(), emission[i] = byte() < 250 ? share() : coordinate();
     for (uint32_t b = 0; b < walls; b++) wall_emission[b] = share();
-    fibrad_flow flow = {.weight = weight,
-                        .emission = emission,
-                        .power = power,
-                        .wall_emission = wall_emission,
-                        .wall_power = wall_power,
-                        .surroundings_emission = share()};
+    fibrad_flow flow = {.weight = weight, .emission = emission, .power = power, .wall_emission = wall_emission};
+    flow.wall_power = wall_power, flow.surroundings_emission = share();
     const int status = CALL(fibrad_rows_flow(&s->rows, n, walls, &flow));
     sum = flow.surroundings_power, size = fabs(sum);
     for (uint32_t i = 0; i < n; i++) sum += power[i], size += fabs(power[i]);

@@ -10,7 +10,7 @@
 #include <unistd.h>
 
 #include "read/read.h"
-#include "papers/furnace/read_furnace.h"
+#include "papers/furnace/furnace.h"
 #include "cli/targets.h"
 #include "mesh/meshes.h"
 #include "text/read_curve.h"
@@ -40,19 +40,11 @@ static void read_frames(const char *path, uint8_t asked, size_t size) {
     static const struct column_name of_tables[] = {{"x", "1"}, {"y", "2 [mm]"}, {"z", "3"}, {"d", "4"}},
                                     of_codes[] = {{"r", "size"}, {"T", "heat [C]"}, {"id", "tag"}};
     static const struct row_rule rule[] = {{"type", "1", false}, {"mass", "2.0", true}};
-    const struct read_options options = {.frames = frames[asked % 4],
-                                         .positions = (asked & 4) != 0,
-                                         .extra = extra,
-                                         .extras = asked & 8 ? 1 + (asked >> 4 & 1) : 0,
-                                         .unit = asked & 128 ? unit : NULL,
-                                         .name = asked & 16 ? of_tables : of_codes,
-                                         .names = !(asked & 64) ? 0
-                                                  : asked & 16  ? 4
-                                                                : 3,
-                                         .rule = rule,
-                                         .rules = (asked & 192) == 128 ? 2 : 0,
-                                         .any_unit = (asked & 128) == 0,
-                                         .no_radius = (asked & 32) != 0};
+    struct read_options options = {.frames = frames[asked % 4], .positions = (asked & 4) != 0, .extra = extra};
+    options.extras = asked & 8 ? 1 + (asked >> 4 & 1) : 0, options.unit = asked & 128 ? unit : NULL;
+    options.name = asked & 16 ? of_tables : of_codes, options.names = !(asked & 64) ? 0 : asked & 16 ? 4 : 3;
+    options.rule = rule, options.rules = (asked & 192) == 128 ? 2 : 0, options.any_unit = (asked & 128) == 0;
+    options.no_radius = (asked & 32) != 0;
     struct reader *reader;
     struct bed bed = bed_empty();
     bool more = true;

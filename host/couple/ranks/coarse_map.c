@@ -1,5 +1,5 @@
 /* coarse_map.c - marks the coarse cells of the whole bed that have particles. SPDX-License-Identifier: MIT */
-#include "couple/ranks/coarse_map.h"
+#include "couple/ranks/ranks.h"
 
 #include <math.h>
 #include <stdbool.h>

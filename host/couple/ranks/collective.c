@@ -1,6 +1,6 @@
 /* collective.c - errors that all ranks agree on, and elements for other ranks.
  * SPDX-License-Identifier: MIT */
-#include "couple/ranks/collective.h"
+#include "couple/ranks/ranks.h"
 
 #include <inttypes.h>
 #include <limits.h>

@@ -2,7 +2,7 @@
  *
  * All ranks know the boxes of the particles of all ranks. Each rank sends to each box its particles and periodic images
  * within reach of the box. So the receiver needs no periods and makes no images. */
-#include "couple/ranks/halo.h"
+#include "couple/ranks/ranks.h"
 
 #include <math.h>
 #include <string.h>

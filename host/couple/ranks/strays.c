@@ -1,5 +1,5 @@
 /* strays.c - particles beyond walls, and what is said of particles. SPDX-License-Identifier: MIT */
-#include "couple/ranks/strays.h"
+#include "couple/ranks/ranks.h"
 
 #include <inttypes.h>
 #include <math.h>

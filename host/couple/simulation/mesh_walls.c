@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "couple/ranks/halo.h"
+#include "couple/ranks/ranks.h"
 
 enum { VOTERS = 1000 };
 

@@ -208,15 +208,10 @@ bool radiation_place(struct radiation *r, const double low[3], const double high
 
 fibrad_insitu_bed radiation_bed(const struct radiation *r, const double low[3], const double high[3],
                                 const int periodic[3]) {
-    return (fibrad_insitu_bed){.low = {low[0], low[1], low[2]},
-                               .high = {high[0], high[1], high[2]},
-                               .periodic = {periodic[0], periodic[1], periodic[2]},
-                               .wall = r->wall,
-                               .wall_emissivity = r->emissivity,
-                               .walls = r->walls,
-                               .opening = r->opening,
-                               .openings = r->openings,
-                               .triangles = &r->meshes.meshes.triangles};
+    fibrad_insitu_bed bed = {.wall = r->wall, .wall_emissivity = r->emissivity, .walls = r->walls};
+    bed.opening = r->opening, bed.openings = r->openings, bed.triangles = &r->meshes.meshes.triangles;
+    for (int a = 0; a < 3; ++a) bed.low[a] = low[a], bed.high[a] = high[a], bed.periodic[a] = periodic[a];
+    return bed;
 }
 
 /* ---- rows and powers -------------------------------------------------------------------------------------------- */
@@ -254,12 +249,9 @@ bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t 
 
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,
                       const double *solid, const double *capacity, double seconds, double *power, double *conductance) {
-    const fibrad_insitu_state state = {.sigma = r->sigma,
-                                       .surroundings = r->surroundings,
-                                       .wall_temperature = r->temperature,
-                                       .n = bed->n,
-                                       .id = bed->id,
-                                       .temperature = temperature};
+    fibrad_insitu_state state = {
+        .sigma = r->sigma, .surroundings = r->surroundings, .wall_temperature = r->temperature};
+    state.n = bed->n, state.id = bed->id, state.temperature = temperature;
     int status = fibrad_insitu_powers(r->insitu, &state, power, &r->totals);
     if (status == FIBRAD_E_STATE) { /* particles have come or gone since the rows were made */
         if (!radiation_rows(r, bed, step, true)) return false;

@@ -5,17 +5,13 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "papers/furnace/furnace_cases.h"
-#include "papers/furnace/furnace_run.h"
-#include "papers/furnace/read_furnace.h"
+#include "papers/furnace/furnace.h"
 #include "cli/message.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "command/commands.h"
 #include "plot/gnuplot.h"
-#include "papers/furnace/plot_furnace.h"
 #include "text/report.h"
-#include "papers/furnace/write_furnace.h"
 
 static const char *const methods[] = {"hfm", "mchf", "mchf-x", "mc"};
 
@@ -201,10 +197,9 @@ static void furnace_print_comparison(FILE *text, const struct request *request, 
         double z = furnace_reference_z[k], reference = furnace_reference(request->number, k);
         double t = furnace_axis_temperature(run, z);
         fprintf(text, "# %5.1f %9.2f %9.2f %+7.2f", z, t, reference, 100 * (t / reference - 1));
-        if (measured && k > 0 && k < FURNACE_REFERENCES - 1) {
+        if (measured && k > 0 && k < FURNACE_REFERENCES - 1)
             for (int g = 0; g < 2; g++)
                 fprintf(text, "  %8.4f %7.4f", 1 / furnace_axis_theta(run, g, z), furnace_reference_theta[paper][g][k]);
-        }
         putc('\n', text);
     }
     furnace_powers(run, power);

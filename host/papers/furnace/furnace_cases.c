@@ -1,6 +1,6 @@
 /* furnace_cases.c - the published furnace, its reference values, and values along its axis.
  * SPDX-License-Identifier: MIT */
-#include "papers/furnace/furnace_cases.h"
+#include "papers/furnace/furnace.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
 /* furnace_run.c - the methods for a box with a participating medium, by OpenMP. SPDX-License-Identifier: MIT */
-#include "papers/furnace/furnace_run.h"
+#include "papers/furnace/furnace.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "cli/progress.h"
 

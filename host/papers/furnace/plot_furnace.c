@@ -1,11 +1,10 @@
 /* plot_furnace.c - a picture of the fields in the centre plane of a box, by gnuplot. SPDX-License-Identifier: MIT */
-#include "papers/furnace/plot_furnace.h"
+#include "papers/furnace/furnace.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "papers/furnace/furnace_cases.h"
 #include "plot/gnuplot.h"
 
 /* A map of the centre plane. Values are at centres of cells, or of faces across axis x or z. */

@@ -1,5 +1,5 @@
 /* read_furnace.c - boxes from text files of keys and values. SPDX-License-Identifier: MIT */
-#include "papers/furnace/read_furnace.h"
+#include "papers/furnace/furnace.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* write_furnace.c - writes the fields of a box. SPDX-License-Identifier: MIT */
-#include "papers/furnace/write_furnace.h"
+#include "papers/furnace/furnace.h"
 
 #include "text/text.h"
 

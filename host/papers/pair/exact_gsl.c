@@ -56,8 +56,7 @@ int exact_gsl_lens(double r1, double r2, double gap, double *f12, double *abserr
     if (work) gsl_integration_cquad_workspace_free(work);
     gsl_set_error_handler(handler);
     if (status) return status;
-    double whole = M_PI * gsl_pow_2((R - r) / pair.d) / (1 + inside);
-    double scale = gsl_pow_2(r / r1) / (2 * M_PI);
+    double whole = M_PI * gsl_pow_2((R - r) / pair.d) / (1 + inside), scale = gsl_pow_2(r / r1) / (2 * M_PI);
     *f12 = scale * (whole + pair.width * sum);
     *abserr = scale * pair.width * error;
     return 0;

@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double pi = 3.14159265358979323846;
-
 /* ---- visible areas in one direction ---------------------------------------------------------------------------- */
 
 /* A shadow disc. Lengths are in radii of sphere i. Disc 0 is the window: centre 0, radius 1. */
@@ -58,8 +56,7 @@ static double cap(double q) {
 /* Integral of the ordinate of an arc from x1 to x2: the trapezium below its chord, and the cap. */
 static double below(const struct slicer *s, const struct arc *arc, double x1, double x2) {
     const struct disc *disc = &s->disc[arc->disc];
-    const double y1 = ordinate(disc, x1), y2 = ordinate(disc, x2);
-    const double chord = sqrt(square(x2 - x1) + square(y2 - y1)) / 2;
+    const double y1 = ordinate(disc, x1), y2 = ordinate(disc, x2), chord = sqrt(square(x2 - x1) + square(y2 - y1)) / 2;
     return (x2 - x1) * (disc->v + arc->half * (y1 + y2) / 2) + arc->half * square(disc->r) * cap(chord / disc->r);
 }
 
@@ -234,7 +231,7 @@ static double direction(const struct chart *chart, double x, double y, double w[
 static double cell_radius(const struct cell *cell) {
     if (!cell->chart->polar) return hypot(cell->dx, cell->dy);
     const double *theta = cell->chart->theta, span = theta[1] - theta[0];
-    const double widest = fmin(theta[0] + span * (cell->x + cell->dx), pi / 2);
+    const double widest = fmin(theta[0] + span * (cell->x + cell->dx), M_PI / 2);
     return 1.5 * span * cell->dx + fmin(sin(widest) * cell->dy, widest);
 }
 
@@ -296,7 +293,7 @@ static void add_direction(struct integral *in, const double w[3], double weight,
  * wide for the rule to see all discs in it. Returns their number. */
 static uint32_t cull(const struct integral *in, const struct cell *cell, const uint32_t *near, uint32_t count,
                      uint32_t *out, bool *coarse) {
-    double w[3], smallest = pi;
+    double w[3], smallest = M_PI;
     direction(cell->chart, cell->x, cell->y, w);
     const double radius = cell_radius(cell);
     uint32_t n = 0;
@@ -323,7 +320,7 @@ static void evaluate(struct integral *in, const struct cell *cell, const uint32_
             const double density =
                 direction(cell->chart, cell->x + cell->dx * gauss_node[a], cell->y + cell->dy * gauss_node[b], w);
             const double solid_angle = 4 * cell->dx * cell->dy * gauss_weight[a] * gauss_weight[b] * density;
-            add_direction(in, w, solid_angle / (4 * pi * pi), near, count, value);
+            add_direction(in, w, solid_angle / (4 * M_PI * M_PI), near, count, value);
         }
 }
 
@@ -511,7 +508,7 @@ int reference_pair(const fibrad_spheres *spheres, uint32_t i, uint32_t j, const 
             for (int m = 0; m < 3; m++) chart[k].axis[m] = target->c[m] / target->distance;
             across(chart[k].axis, chart[k].side, chart[k].up);
             for (int m = 0; m < 4; m++)
-                cell[4 * k + m] = (struct cell){&chart[k], 0.5, (m + 0.5) * pi / 2, 0.5, pi / 4};
+                cell[4 * k + m] = (struct cell){&chart[k], 0.5, (m + 0.5) * M_PI / 2, 0.5, M_PI / 4};
         }
         status = integrate(&in, cell, 8, i, rule, rule->tolerance * unobstructed, f, report);
         report->error /= unobstructed;

@@ -42,8 +42,9 @@ double correlation_kunii_smith(double emissivity, double porosity);
 
 /* ---- rows of a bed, one thread ---- */
 
-/* The scene of a bed, and memory for one row. */
+/* A bed, its scene, and memory for one row. Begin with ROWS_NONE. */
 struct rows {
+    struct bed bed;
     fibrad_scene *scene;
     void *block; /* of the scene */
     fibrad_work work;
@@ -52,8 +53,11 @@ struct rows {
     double *f;     /* [n] */
 };
 
-/* Makes the scene of a bed; periodic: with its periods. Close it also after an error. Returns a status. */
-int rows_open(struct rows *rows, const struct bed *bed, bool periodic);
+#define ROWS_NONE                                                                                                      \
+    (struct rows) { .bed = bed_empty() }
+
+/* Makes the scene of rows->bed; periodic: with its periods. Close it also after an error. Returns a status. */
+int rows_open(struct rows *rows, bool periodic);
 void rows_close(struct rows *rows);
 
 /* How rows are computed: one of them is set. */

@@ -28,14 +28,12 @@ static int lattice_row_sum(struct rows *rows, int method, double distance, doubl
 }
 
 static int draw_lattice(double low, uint64_t seed, double sums[METHODS][DISTANCES]) {
-    struct bed bed = bed_empty();
-    struct rows rows = {0};
-    int status = bed_make_fcc(&bed, low, distances[DISTANCES - 1], seed);
-    if (!status) status = rows_open(&rows, &bed, false);
+    struct rows rows = ROWS_NONE;
+    int status = bed_make_fcc(&rows.bed, low, distances[DISTANCES - 1], seed);
+    if (!status) status = rows_open(&rows, false);
     for (int m = 0; m < METHODS; ++m)
         for (int d = 0; d < DISTANCES && !status; ++d) status = lattice_row_sum(&rows, m, distances[d], &sums[m][d]);
     rows_close(&rows);
-    bed_free(&bed);
     return status;
 }
 
@@ -222,13 +220,11 @@ int reproduce_table1(struct reproduce *reproduce) {
           "cast_rays,cast_s,cast_row_error,mc_rays,mc_s,mc_row_error\n",
           reproduce->data);
     for (int k = 0; k < SIZES; ++k) {
-        struct bed bed = bed_empty();
-        struct rows rows = {0};
-        int status = bed_make_packing(&bed, sizes[k], .8, 1.2, .55, 1);
-        if (!status) status = rows_open(&rows, &bed, false);
+        struct rows rows = ROWS_NONE;
+        int status = bed_make_packing(&rows.bed, sizes[k], .8, 1.2, .55, 1);
+        if (!status) status = rows_open(&rows, false);
         if (!status) status = time_bed(reproduce, &rows, published[k], published_mc[k]);
         rows_close(&rows);
-        bed_free(&bed);
         if (status) return status;
     }
     return STATUS_OK;

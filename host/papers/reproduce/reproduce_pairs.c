@@ -6,8 +6,6 @@
 #include "papers/pair/reference.h"
 #include "papers/reproduce/reproduce.h"
 
-#define PI 3.14159265358979323846
-
 static const double radii[] = {.1, .3, .7, 1};
 static const double gaps[] = {0, .01, .02, .05, .1, .5, 1, 2, 4, 6, 8};
 enum { RADII = sizeof radii / sizeof *radii, GAPS = sizeof gaps / sizeof *gaps };
@@ -70,7 +68,7 @@ int reproduce_fig4(struct reproduce *reproduce) {
                    {2, 1.605e-2, 1.615e-2},
                    {3, 1.017e-2, 1.021e-2},
                    {4, .698e-2, .704e-2}};
-    reproduce_compare(reproduce, SOURCE_PAPER, "", .5 - 4 / (3 * PI), exact_factor(1, 0),
+    reproduce_compare(reproduce, SOURCE_PAPER, "", .5 - 4 / (3 * M_PI), exact_factor(1, 0),
                       "exact, in contact: 1/2 - 4/(3 pi)");
     for (size_t k = 0; k < sizeof pebbles / sizeof *pebbles; ++k) {
         const double gap = pebbles[k].gap;
@@ -133,7 +131,7 @@ static int third_sphere(struct reproduce *reproduce, double r, double gap, doubl
     const int status = reference_factor(r, gap, obstacle, &truth);
     if (status) return status;
     for (int a = 0; a < AZIMUTHS; ++a) {
-        const double turned[4] = {to_axis * cos(2 * PI * a / AZIMUTHS), to_axis * sin(2 * PI * a / AZIMUTHS), z, r};
+        const double turned[4] = {to_axis * cos(2 * M_PI * a / AZIMUTHS), to_axis * sin(2 * M_PI * a / AZIMUTHS), z, r};
         widen(&raw, a, 100 * (surface_factor(r, gap, turned, 55, plain) / truth - 1));
         widen(&corrected, a, 100 * (surface_factor(r, gap, turned, 55, 0) / truth - 1));
     }

@@ -6,8 +6,6 @@
 #include "cli/message.h"
 #include "papers/reproduce/reproduce.h"
 
-#define PI 3.14159265358979323846
-
 /* ---- two unit spheres at centre distance H ---- */
 
 /* The factor from a plane element to a unit sphere at distance h. t: angle between the normal and the direction of the
@@ -17,7 +15,7 @@ static double element(double h, double t) {
     if (cos(t) <= -1 / h) return 0;
     const double x = sqrt(h * h - 1), y = -x * cos(t) / sin(t), root = sin(t) * sqrt(fmax(0, 1 - y * y));
     if (x == 0) return cos(t) > 0 ? cos(t) : 0;
-    return (cos(t) * acos(y) - x * root) / (PI * h * h) + atan(root / x) / PI;
+    return (cos(t) * acos(y) - x * root) / (M_PI * h * h) + atan(root / x) / M_PI;
 }
 
 /* The factor from sphere 2 at a point at angle t from the line of centres to sphere 1: distance and angle of sphere 1
@@ -33,7 +31,7 @@ static double share_within(double h, double t) {
     enum { STEPS = 4000 };
     double within = 0, all = 0;
     for (int k = 0; k < STEPS; ++k) {
-        const double a = PI / 2 * (k + .5) / STEPS, power = received(h, a) * sin(a);
+        const double a = M_PI / 2 * (k + .5) / STEPS, power = received(h, a) * sin(a);
         all += power;
         if (a < t) within += power;
     }
@@ -42,14 +40,14 @@ static double share_within(double h, double t) {
 
 int reproduce_pebble_pair(struct reproduce *reproduce) {
     for (int h = 2; h <= 6; ++h) {
-        reproduce_compare(reproduce, SOURCE_PAPER, "", .25, share_within(h, PI / 6),
+        reproduce_compare(reproduce, SOURCE_PAPER, "", .25, share_within(h, M_PI / 6),
                           "H = %d: received within 30 deg; cosine law", h);
-        reproduce_compare(reproduce, SOURCE_PAPER, "", .75, share_within(h, PI / 3),
+        reproduce_compare(reproduce, SOURCE_PAPER, "", .75, share_within(h, M_PI / 3),
                           "H = %d: received within 60 deg; cosine law", h);
     }
     fputs("angle_degrees,cosine,H2,H3,H4,H6\n", reproduce->data);
     for (int degrees = 0; degrees <= 90; degrees += 2) {
-        const double t = degrees * PI / 180;
+        const double t = degrees * M_PI / 180;
         fprintf(reproduce->data, "%d,%.5f,%.5f,%.5f,%.5f,%.5f\n", degrees, cos(t), received(2, t) / received(2, 0),
                 received(3, t) / received(3, 0), received(4, t) / received(4, 0), received(6, t) / received(6, 0));
     }
@@ -77,7 +75,8 @@ static double apart(const struct bed *bed, uint32_t i, uint32_t j) {
     return sqrt(square);
 }
 
-static int collect_within(struct within *within, const struct bed *bed, struct rows *rows) {
+static int collect_within(struct within *within, struct rows *rows) {
+    const struct bed *bed = &rows->bed;
     const fibrad_beam_rule rule = {.directions = 610};
     const struct row_rule beam = {.beam = &rule};
     for (uint32_t s = 0; s < SAMPLE; ++s) {
@@ -121,15 +120,13 @@ int reproduce_pebble_bed(struct reproduce *reproduce) {
     static const double fractions[] = {.55, .6};
     fputs("fraction,centre_distance_radii,factor,spheres\n", reproduce->data);
     for (size_t k = 0; k < sizeof fractions / sizeof *fractions; ++k) {
-        struct bed bed = bed_empty();
-        struct rows rows = {0};
+        struct rows rows = ROWS_NONE;
         struct within within = {0};
-        int status = bed_make_packing(&bed, PEBBLES, 1, 1, fractions[k], 1);
-        if (!status) status = rows_open(&rows, &bed, true);
-        if (!status) status = collect_within(&within, &bed, &rows);
+        int status = bed_make_packing(&rows.bed, PEBBLES, 1, 1, fractions[k], 1);
+        if (!status) status = rows_open(&rows, true);
+        if (!status) status = collect_within(&within, &rows);
         if (!status) report_bed(reproduce, fractions[k], &within);
         rows_close(&rows);
-        bed_free(&bed);
         if (status) return status;
     }
     return STATUS_OK;

@@ -6,8 +6,6 @@
 #include "cli/message.h"
 #include "papers/reproduce/reproduce.h"
 
-#define PI 3.14159265358979323846
-
 enum { ORIENTATIONS = 24, RAYS = 200000 };
 
 /* Results for two unit spheres: means over orientations of the pair, each of which has its own rays. */
@@ -26,7 +24,7 @@ static int cast_once(struct rows *rows, const fibrad_cast_rule *rule, double exa
     means->error += pow(f12 / exact - 1, 2) / ORIENTATIONS;
     means->f12 += f12 / ORIENTATIONS;
     means->length += length[0] / ORIENTATIONS;
-    means->angle += angle[0] * 180 / PI / ORIENTATIONS;
+    means->angle += angle[0] * 180 / M_PI / ORIENTATIONS;
     return STATUS_OK;
 }
 
@@ -36,16 +34,15 @@ static int cast_pair(double h, fibrad_cast_rule rule, struct pair_rays *means) {
     *means = (struct pair_rays){0};
     fibrad_pair_exact(1, 1, h - 2, &exact);
     for (uint32_t k = 0; k < ORIENTATIONS && !status; ++k) {
-        struct bed bed = bed_empty();
-        struct rows rows = {0};
+        struct rows rows = ROWS_NONE;
         fibrad_direction(k, ORIENTATIONS, w);
         rule.seed = k;
-        status = bed_add(&bed, &(struct bed_sphere){.r = 1});
-        if (!status) status = bed_add(&bed, &(struct bed_sphere){.x = h * w[0], .y = h * w[1], .z = h * w[2], .r = 1});
-        if (!status) status = rows_open(&rows, &bed, false);
+        status = bed_add(&rows.bed, &(struct bed_sphere){.r = 1});
+        if (!status)
+            status = bed_add(&rows.bed, &(struct bed_sphere){.x = h * w[0], .y = h * w[1], .z = h * w[2], .r = 1});
+        if (!status) status = rows_open(&rows, false);
         if (!status) status = cast_once(&rows, &rule, exact, means);
         rows_close(&rows);
-        bed_free(&bed);
     }
     means->error = sqrt(means->error);
     return status;

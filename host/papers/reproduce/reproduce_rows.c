@@ -2,17 +2,16 @@
 #include <stdlib.h>
 
 #include "bed/bed_scene.h"
-#include "cli/interrupt.h"
 #include "cli/message.h"
 #include "papers/reproduce/reproduce.h"
 #include "simple/heap.h"
 
-int rows_open(struct rows *rows, const struct bed *bed, bool periodic) {
-    const fibrad_scene_config box = bed_scene(bed, NULL);
-    const fibrad_spheres spheres = bed_spheres(bed);
-    *rows = (struct rows){.n = bed->n, .work.memory.resize = fibrad_heap_resize};
-    rows->col = malloc(bed->n * sizeof *rows->col);
-    rows->f = malloc(bed->n * sizeof *rows->f);
+int rows_open(struct rows *rows, bool periodic) {
+    const fibrad_scene_config box = bed_scene(&rows->bed, NULL);
+    const fibrad_spheres spheres = bed_spheres(&rows->bed);
+    rows->n = spheres.n, rows->work.memory.resize = fibrad_heap_resize;
+    rows->col = malloc(rows->n * sizeof *rows->col);
+    rows->f = malloc(rows->n * sizeof *rows->f);
     if (!rows->col || !rows->f) return message_memory();
     const int status = fibrad_heap_scene(&rows->scene, &rows->block, periodic ? &box : NULL, &spheres, NULL);
     return status ? message(STATUS_INPUT, "bed: %s", fibrad_status_text(status)) : STATUS_OK;
@@ -23,7 +22,7 @@ void rows_close(struct rows *rows) {
     free(rows->work.memory.block);
     free(rows->col);
     free(rows->f);
-    *rows = (struct rows){0};
+    bed_free(&rows->bed);
 }
 
 int rows_row(struct rows *rows, const struct row_rule *method, uint32_t i, fibrad_row *row) {

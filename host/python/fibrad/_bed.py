@@ -26,8 +26,8 @@ from ._walls import Container, Walls
 from ._warnings import PLACES, ROWS, SOURCES, warn, warn_found, warn_metres
 
 _OF_SPHERES = ("power", "temperature", "power_error", "temperature_error", "least_temperature", "largest_temperature",
-               "centre_temperature", "surface_error", "centre_error", "conducted")
-_OF_WALLS = ("wall_power", "wall_temperature", "wall_error", "wall_conducted")
+               "centre_temperature", "surface_error", "centre_error", "conducted", "convected")
+_OF_WALLS = ("wall_power", "wall_temperature", "wall_error", "wall_conducted", "wall_convected")
 
 
 def _choice(name: str, value: Optional[int], choices: tuple[int, ...]) -> int:
@@ -117,6 +117,9 @@ class Bed:
                 raise (container or self._container).error(packing or self._packing, status, fault)
         finally:
             self._busy.release()
+
+    def _area_of(self, wall: int) -> float:
+        return float(library.fibrad_bed_wall_area(self._handle, wall))
 
     def __repr__(self) -> str:
         r = self._packing.r
@@ -311,7 +314,8 @@ class Bed:
     def solve(self, temperature: Optional[ArrayLike], emissivity: Emissivity, *, power: Optional[ArrayLike] = None,
               surroundings: Optional[float] = None, walls: Optional[Walls] = None, tolerance: Optional[float] = None,
               sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None,
-              conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Powers:
+              conductivity: Optional[ArrayLike] = None, contacts: Any = None, convection: Optional[ArrayLike] = None,
+              gas_temperature: Optional[ArrayLike] = None) -> Powers:
         """Net powers and temperatures of grey diffuse spheres and walls. A solution begins with the last one.
 
         Parameters
@@ -344,12 +348,16 @@ class Bed:
             [W/K] What conducts heat between spheres i and j. j may also be the name of a wall, in a list. Several
             contacts may join the same spheres. Of a matrix (n, n), which is symmetric, each element above the diagonal
             is a contact. On spheres of finite `conductivity` they act at their places.
+        convection, gas_temperature : (n,) array or float, optional
+            [W/(m2 K)] Heat transfer coefficients of spheres to gas, and [K] temperatures of this gas. Walls have keys:
+            ``"zmin:convection=20:gas=300"``.
         """
         container, packing, n = self._container, self._packing, self.n
         kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, TEMPERATURE_MAX,
                              packing.names, power is not None)
         given = container.with_values(walls)
-        sources = Sources(packing, container, given, surroundings, sigma, tolerance, contacts, conductivity)
+        sources = Sources(packing, container, given, surroundings, sigma, tolerance, contacts, conductivity, convection,
+                          gas_temperature, self._area_of)
         sources.c.temperature = pointer(kelvins)
         powers, wall_light = power_of(power, kelvins, packing), np.zeros(len(given))
         if light is not None:
@@ -390,6 +398,8 @@ class Bed:
                       centre_temperatures=of_spheres["centre_temperature"], surface_errors=of_spheres["surface_error"],
                       centre_errors=of_spheres["centre_error"], conducted=of_spheres["conducted"],
                       wall_conducted=by_name["wall_conducted"], contact_flows=flows,
+                      convected=of_spheres["convected"], wall_convected=by_name["wall_convected"], gas=result.gas_power,
+                      gas_error=result.gas_error,
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)
 
@@ -405,7 +415,9 @@ class Bed:
                 power: Optional[ArrayLike] = None, surroundings: Optional[float] = None,
                 surroundings_end: Optional[float] = None, walls: Optional[Walls] = None,
                 walls_end: Optional[Walls] = None, step: Optional[float] = None, tolerance: Optional[float] = None,
-                sigma: float = STEFAN_BOLTZMANN, conductivity: Optional[ArrayLike] = None, contacts: Any = None) -> Advance:
+                sigma: float = STEFAN_BOLTZMANN, conductivity: Optional[ArrayLike] = None, contacts: Any = None,
+                convection: Optional[ArrayLike] = None, gas_temperature: Optional[ArrayLike] = None,
+                gas_temperature_end: Optional[ArrayLike] = None) -> Advance:
         """Temperatures after a span of time: capacity dT/dt = power + net power. Steps are implicit and of second order.
         They keep the energy. Small spheres among large ones do not limit the step.
 
@@ -427,14 +439,21 @@ class Bed:
             [s] All steps are equal and at most this long. Default: automatic steps.
         tolerance : float, optional
             Of automatic steps: relative error of a temperature. Default: 1e-4.
-        emissivity, surroundings, walls, sigma, conductivity, contacts
+        gas_temperature_end : (n,) array or float, optional
+            [K] Temperatures of the gas at the end, linear in between. Default: constant.
+        emissivity, surroundings, walls, sigma, conductivity, contacts, convection, gas_temperature
             As for `solve`.
         """
         container, packing, n = self._container, self._packing, self.n
         now = per_sphere("temperature", temperature, n, 0, TEMPERATURE_MAX, packing.names).copy()
         heat = per_sphere("capacity", capacity, n, 0, CAPACITY_MAX, packing.names)
         given = container.with_values(walls)
-        sources = Sources(packing, container, given, surroundings, sigma, None, contacts, conductivity)
+        sources = Sources(packing, container, given, surroundings, sigma, None, contacts, conductivity, convection,
+                          gas_temperature, self._area_of)
+        if gas_temperature_end is not None and gas_temperature is None:
+            raise refuse("gas_temperature_end needs gas_temperature")
+        gas = (None if gas_temperature_end is None else
+               per_sphere("gas_temperature_end", gas_temperature_end, n, 0, TEMPERATURE_MAX, packing.names))
         end, sides = container.temperatures(container.with_values(walls_end, given))
         if not np.array_equal(np.isnan(end), np.isnan(sources.wall_temperature)) or not sources.has_sides(sides):
             raise refuse("walls_end: only the temperatures of walls can change, and not those of single triangles")
@@ -446,13 +465,13 @@ class Bed:
                                       0, TEMPERATURE_MAX))
         flow, energy = np.zeros(n), np.zeros(len(given))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
-                    wall_temperature=pointer(end), surroundings=ctypes.pointer(around),
+                    wall_temperature=pointer(end), surroundings=ctypes.pointer(around), gas=pointer(gas),
                     step=real("step", step, 0, DURATION_MAX), tolerance=real("tolerance", tolerance, 0, 1),
                     power=pointer(flow), wall_energy=pointer(energy), law=ctypes.pointer(law) if law else None)
         self._use(library.fibrad_bed_advance, sources.c, span)
         self._warn(SOURCES)
         return Advance(temperatures=now, spheres=flow, walls=dict(zip(container.names, energy.tolist())),
-                       surroundings=span.surroundings_energy, steps=span.steps, refused=span.refused,
+                       surroundings=span.surroundings_energy, gas=span.gas_energy, steps=span.steps, refused=span.refused,
                        corrections=span.corrections, error=span.error)
 
 

@@ -66,9 +66,15 @@ class Powers:
     centre_errors
         [K] (n,) estimated error of `centre_temperatures`.
     conducted
-        [W] (n,) part of `spheres` that comes through contacts. The rest is radiation.
+        [W] (n,) part of `spheres` that comes through contacts.
+    convected
+        [W] (n,) part of `spheres` that comes from gas. The rest is radiation.
     wall_conducted
         [W] part of `walls` that comes through contacts, by name.
+    wall_convected
+        [W] part of `walls` that comes from gas, by name.
+    gas, gas_error
+        [W] net power of the gas, and its estimated error.
     contact_flows
         [W] (m,) what each contact conducts from i to j.
     error
@@ -102,6 +108,10 @@ class Powers:
     centre_errors: NDArray[np.float64]
     conducted: NDArray[np.float64]
     wall_conducted: dict[str, float]
+    convected: NDArray[np.float64]
+    wall_convected: dict[str, float]
+    gas: float
+    gas_error: float
     contact_flows: NDArray[np.float64]
     error: float
     error_patches: float
@@ -112,7 +122,7 @@ class Powers:
     @property
     def balance(self) -> float:
         """[W] sum of all net powers: 0, to rounding."""
-        return math.fsum([*self.spheres, *self.walls.values(), self.surroundings])
+        return math.fsum([*self.spheres, *self.walls.values(), self.surroundings, self.gas])
 
     def __repr__(self) -> str:
         known = self.temperatures[~np.isnan(self.temperatures)]
@@ -125,7 +135,7 @@ class Powers:
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Advance:
     """The result of a span of time. An energy is above 0 where heat was gained. The heat stored in the spheres, and the
-    energies of walls and surroundings, add up to the energy that the powers have supplied.
+    energies of walls, surroundings and gas, add up to the energy that the powers have supplied.
 
     Attributes
     ----------
@@ -134,9 +144,9 @@ class Advance:
     spheres
         [W] (n,) net radiative power of each sphere at the end.
     walls
-        [J] energy that each wall has gained by radiation, by name.
-    surroundings
-        [J] energy that the surroundings have gained by radiation.
+        [J] energy that each wall has gained, by name.
+    surroundings, gas
+        [J] energy that the surroundings have gained, and the gas of `convection`.
     steps
         Steps that were taken.
     refused
@@ -151,6 +161,7 @@ class Advance:
     spheres: NDArray[np.float64]
     walls: dict[str, float]
     surroundings: float
+    gas: float
     steps: int
     refused: int
     corrections: int
@@ -167,7 +178,8 @@ class Sources:
     """A fibrad_heat_sources, its arrays, and the law of emissivities."""
 
     def __init__(self, packing: Packing, container: Container, walls: list[Wall], surroundings: Optional[float],
-                 sigma: float, tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike]):
+                 sigma: float, tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike],
+                 convection: Optional[ArrayLike], gas: Optional[ArrayLike], area_of: Callable[[int], float]):
         n, names = packing.n, packing.names
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
@@ -177,7 +189,13 @@ class Sources:
         self.insulated = np.array(["insulated" in one.values for one in walls], np.uint8)
         self._conducts = (None if conductivity is None else
                           per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names))
+        if (convection is None) != (gas is None):
+            raise refuse("convection and gas_temperature need each other")
+        self._film = None if convection is None else per_sphere("convection", convection, n, 0, 1e12, names) * 4 * math.pi * packing.r**2
+        self.gas = None if gas is None else per_sphere("gas_temperature", gas, n, 0, TEMPERATURE_MAX, names)
+        self._wall_film, self._wall_gas = container.films(walls, area_of)
         self.c = HeatSources(
+            film=pointer(self._film), gas=pointer(self.gas), wall_film=pointer(self._wall_film), wall_gas=pointer(self._wall_gas),
             surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), sigma=real("sigma", sigma, *SIGMA),
             tolerance=real("tolerance", tolerance, 0, 1), conductivity=pointer(self._conducts),
             wall_temperature=pointer(self.wall_temperature), wall_emissivity=pointer(self._wall_emissivity),

@@ -18,7 +18,9 @@ class HeatSources(Structure):
                 ("side_temperature", POINTER(c_double)), ("light", POINTER(c_double)),
                 ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
                 ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
-                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("contact_places", POINTER(c_double))]
+                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("film", POINTER(c_double)),
+                ("gas", POINTER(c_double)), ("wall_film", POINTER(c_double)), ("wall_gas", POINTER(c_double)),
+                ("contact_places", POINTER(c_double))]
 
 
 class Plane(Structure):
@@ -140,7 +142,8 @@ class HeatResult(Structure):
                 ("wall_absorbed", POINTER(c_double)), ("surroundings_error", c_double),
                 ("wall_area", POINTER(c_double)), ("least_temperature", POINTER(c_double)),
                 ("largest_temperature", POINTER(c_double)), ("centre_temperature", POINTER(c_double)),
-                ("surface_error", POINTER(c_double)), ("centre_error", POINTER(c_double)),
+                ("surface_error", POINTER(c_double)), ("centre_error", POINTER(c_double)), ("gas_power", c_double),
+                ("gas_error", c_double), ("convected", POINTER(c_double)), ("wall_convected", POINTER(c_double)),
                 ("conducted", POINTER(c_double)), ("wall_conducted", POINTER(c_double)),
                 ("contact_flow", POINTER(c_double))]
 
@@ -166,11 +169,13 @@ class LightResult(Structure):
 
 class Span(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("capacity", POINTER(c_double)), ("duration", c_double),
-                ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)), ("step", c_double),
+                ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)),
+                ("gas", POINTER(c_double)), ("wall_gas", POINTER(c_double)), ("step", c_double),
                 ("tolerance", c_double), ("power", POINTER(c_double)), ("wall_power", POINTER(c_double)),
                 ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)), ("surroundings_energy", c_double),
-                ("law", POINTER(Law)), ("observe", Observe), ("context", c_void_p), ("error", c_double),
-                ("steps", c_uint64), ("refused", c_uint64), ("sweeps", c_uint64), ("corrections", c_uint64)]
+                ("gas_power", c_double), ("gas_energy", c_double), ("law", POINTER(Law)), ("observe", Observe),
+                ("context", c_void_p), ("error", c_double), ("steps", c_uint64), ("refused", c_uint64),
+                ("sweeps", c_uint64), ("corrections", c_uint64)]
 
 
 class ContactRule(Structure):
@@ -211,6 +216,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "fibrad_bed_matrix_free": (None, [POINTER(BedMatrix)]),
     "fibrad_view_factors": (c_int, [POINTER(SceneConfig), POINTER(Spheres), POINTER(BedRule), POINTER(Run),
         POINTER(POINTER(BedMatrix))]),
+    "fibrad_bed_wall_area": (c_double, [c_void_p, c_uint32]),
     "fibrad_bed_wall_row": (c_int, [c_void_p, c_uint32, POINTER(WallRule), c_double, POINTER(WallRow)]),
     "fibrad_bed_beams": (c_int, [c_void_p, POINTER(HeatConfig)]),
     "fibrad_bed_solve": (c_int, [c_void_p, POINTER(HeatSources), POINTER(Law), POINTER(HeatResult)]),

@@ -6,7 +6,7 @@ import dataclasses
 import math
 import pathlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -22,7 +22,7 @@ _PLANES = ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")  # 2 axis + upper
 _CYLINDERS = ("xcylinder", "ycylinder", "cylinder")  # by fibrad_wall.cylinder.along
 _OTHERS = {"zcylinder": "cylinder", **{x + end: x + name for x in "xyz" for end, name in (("lo", "min"), ("hi", "max"))}}
 _HEAT = ("temperature", "power", "insulated")  # a wall has one of these
-_VALUES = (*_HEAT, "emissivity", "absorptivity")
+_VALUES = (*_HEAT, "emissivity", "absorptivity", "convection", "gas")
 _SIDES = ("auto", "normals", "both")
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
 _NO_WALL = 2**32 - 1
@@ -52,8 +52,8 @@ Walls = Union[str, Wall, Iterable[Union[str, Wall]]]
 
 def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = False, name: Optional[str] = None,
          temperature: Any = None, power: Optional[float] = None, insulated: bool = False,
-         emissivity: Optional[float] = None, absorptivity: Optional[float] = None, scale: float = 1.0,
-         sides: str = "auto") -> Wall:
+         emissivity: Optional[float] = None, absorptivity: Optional[float] = None,
+         convection: Optional[float] = None, gas: Optional[float] = None, scale: float = 1.0, sides: str = "auto") -> Wall:
     """A wall, for the argument ``walls``. The words of the program say the same:
     ``"zmin:temperature=1200:emissivity=0.8,zmax:open"``.
 
@@ -78,12 +78,14 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
         0 to 1. Default: 1.
     absorptivity : float, optional
         Of light from outside, 0 to 1. Default: the emissivity.
+    convection, gas : float, optional
+        [W/(m2 K)] Heat transfer coefficient to gas, and [K] temperature of this gas. Not of an endless wall.
     scale, sides
         Of "mesh:FILE", as for `Mesh.from_stl`.
     """
     kind, word, place = _shape(shape, name, (scale, sides))
     given = {"temperature": temperature, "power": power, "insulated": insulated or None, "emissivity": emissivity,
-             "absorptivity": absorptivity}
+             "absorptivity": absorptivity, "convection": convection, "gas": gas}
     values = {key: value for key, value in given.items() if value is not None}
     useless = [key for key, use in (("at", at is not None and kind != "plane"), ("open", open and kind != "plane"),
                                     ("name", name is not None and kind != "mesh"),
@@ -137,7 +139,7 @@ def _of_words(text: str) -> Iterator[Wall]:
                 keys["sides"] = key
             else:
                 raise refuse(f"wall {shape}: {word!r} is of no use here; there are at=, open, temperature=, power=, insulated, "
-                             f"emissivity=, absorptivity=, name=, scale=, {', '.join(_SIDES)}")
+                             f"emissivity=, absorptivity=, convection=, gas=, name=, scale=, {', '.join(_SIDES)}")
         yield wall(shape, **keys)
 
 
@@ -265,6 +267,21 @@ class Container:
     def absorptivities(self, walls: list[Wall]) -> NDArray[np.float64]:
         """[walls]"""
         return np.array([one.share("absorptivity", one.share("emissivity", 1.0)) for one in walls])
+
+    def films(self, walls: list[Wall], area_of: Callable[[int], float]) -> tuple[Optional[NDArray[np.float64]],
+                                                                              Optional[NDArray[np.float64]]]:
+        """[walls] W/K to gas, and K of the gas, with the areas of walls. None: no wall has a convection."""
+        if not any("convection" in one.values for one in walls):
+            return None, None
+        film, kelvins = np.zeros(len(walls)), np.zeros(len(walls))
+        for b, one in enumerate(walls):
+            if "convection" not in one.values:
+                continue
+            if "gas" not in one.values or not math.isfinite(area_of(b)):
+                raise refuse(f"wall {one.name}: convection needs gas=, the temperature of the gas, and a wall that ends")
+            film[b] = real(f"convection of wall {one.name}", one.values["convection"], 0, 1e12) * area_of(b)
+            kelvins[b] = real(f"gas of wall {one.name}", one.values["gas"], 0, TEMPERATURE_MAX)
+        return film, kelvins
 
     def temperatures(self, walls: list[Wall]) -> tuple[NDArray[np.float64], Optional[NDArray[np.float64]]]:
         """[walls] temperatures, NaN where they are to be found. And those of the sides of triangles, [2 t], NaN for walls

@@ -54,8 +54,7 @@ static bool is_tag(const struct tag *tag, const char *name) {
 
 /* Finds the next tag and moves behind it. False: there is none. */
 static bool next_tag(struct xml *xml, struct tag *tag) {
-    const char *last = xml->grid->end;
-    const char *open = memchr(xml->at, '<', (size_t)(last - xml->at));
+    const char *last = xml->grid->end, *open = memchr(xml->at, '<', (size_t)(last - xml->at));
     if (!open) return false;
     char quote = 0;
     for (const char *c = tag->text = open + 1; c < last; ++c) {
@@ -259,10 +258,8 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
     if (xml->grid->n == 0 || !(xml->points || vtk_wants(xml->grid, name))) return STATUS_OK;
     if (components != (xml->points ? 3 : 1))
         return xml_fail(xml, "the array %.40s has %" PRIu64 " components", name, components);
-    struct place place = {.type = vtk_find_type(attribute(tag, "type", type)),
-                          .count = components * xml->grid->n,
-                          .at = xml->at,
-                          .text = strcmp(format, "ascii") == 0};
+    struct place place = {.type = vtk_find_type(attribute(tag, "type", type)), .count = components * xml->grid->n};
+    place.at = xml->at, place.text = strcmp(format, "ascii") == 0;
     if (place.type.size == 0) return xml_fail(xml, "arrays of type %.40s cannot be read", type);
     if (strcmp(format, "appended") == 0) {
         const uint64_t offset = number_of(tag, "offset", UINT64_MAX);

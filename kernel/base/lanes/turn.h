@@ -2,7 +2,7 @@
 #ifndef FIBRAD_TURN_H
 #define FIBRAD_TURN_H
 
-#include "base/constants.h"
+#include "base/port.h"
 
 /* sin(2 pi t) for t in [-1/4, 1/4], by its series to the 19th power: to 1e-15. */
 static inline vd vd_sine_quarter(vd t) {
