@@ -6,8 +6,9 @@
  * their powers. The error of a wall is divided by the larger of its power and what it absorbs. When an error is
  * compared with twice its estimate, twice the noise of the paths is subtracted first.
  *
- * The arguments are `quick`, or [scenes [paths from each sphere [first scene [error]]]]. The environment may have
- * FIBRAD, the program [build/fibrad], and TRUTH, a folder that keeps the powers by paths [none]. */
+ * The arguments are `quick`, or [scenes [paths from each sphere [first scene [error]]]]. Figures of docs/trust.md are
+ * by bench_tolerance 14 200000. The environment may have FIBRAD, the program [build/fibrad], and TRUTH, a folder that
+ * keeps the powers by paths [none]. */
 #define _POSIX_C_SOURCE 200809L
 #include "room.h"
 
@@ -228,7 +229,7 @@ static void compare(int scene, const struct room *room, const struct truth *trut
 int main(int argc, char **argv) {
     const int quick = argc > 1 && strcmp(argv[1], "quick") == 0, given = argc > 1 && !quick;
     const int scenes = quick ? 1 : given ? atoi(argv[1]) : KINDS, first = argc > 3 ? atoi(argv[3]) : 0;
-    const long paths = quick ? 20000 : given && argc > 2 ? atol(argv[2]) : 200000;
+    const long paths = quick ? 20000 : given && argc > 2 ? atol(argv[2]) : 50000;
     const double wanted = quick ? .02 : argc > 4 ? atof(argv[4]) : .002;
     bench_preamble("fibrad heat --error with walls: errors of spheres over their root mean square power, and of the "
                    "worst wall over the larger of its power and what it absorbs; spheres and walls whose error is "

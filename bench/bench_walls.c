@@ -1,6 +1,7 @@
 /* bench_walls.c - error of net powers of spheres among grey walls, against paths. SPDX-License-Identifier: MIT
  *
- * The arguments are `quick`, or [scenes [paths from each sphere [first scene]]]. */
+ * The arguments are `quick`, or [scenes [paths from each sphere [first scene]]]. Figures of docs/accuracy.md are by
+ * bench_walls 16 400000. */
 #include "room.h"
 
 static const struct kind kinds[] = {
@@ -131,7 +132,7 @@ int main(int argc, char **argv) {
     static struct honesty all[CONFIGS];
     const int quick = argc > 1 && strcmp(argv[1], "quick") == 0, given = argc > 1 && !quick;
     const int scenes = quick ? 1 : given ? atoi(argv[1]) : KINDS, first = argc > 3 ? atoi(argv[3]) : 0;
-    const long paths = quick ? 20000 : given && argc > 2 ? atol(argv[2]) : 400000;
+    const long paths = quick ? 20000 : given && argc > 2 ? atol(argv[2]) : 100000;
     bench_preamble(
         "net powers with walls: errors over the spheres' root mean square power, and of the worst wall over "
         "the larger of its power and 5 % of what it absorbs; bodies whose error is above twice its estimate, "

@@ -8,7 +8,7 @@
 set -u
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}" "${JOBS:=$(nproc 2>/dev/null || echo 1)}"
 export BUILD MAKE CC
-tests="base pair_exact surface matrix scene direction areas furnace surface_row work beam cast walls trace exchange wall_rows protocol part heat light_mesh stress"
+tests="base pair_exact direction areas scene beam work trace matrix cast walls wall_rows exchange protocol part heat light_mesh surface surface_row furnace stress"
 whole=$BUILD/mutate/whole # built and unbroken; every break starts from a copy
 export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-1200}"
 # shellcheck disable=SC3045  # dash has it
