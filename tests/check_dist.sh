@@ -80,7 +80,7 @@ if test -e .git; then
     $MAKE -s --no-print-directory BUILD="$BUILD" CC="$CC" dist || exit 1
     tar -xzf "$folder"/fibrad-*.tar.gz -C "$folder"
     # variables of the make that runs this script are not for the other tree
-    env -u MAKEFLAGS -u MFLAGS -u BUILD $MAKE -s -C "$folder"/fibrad-*/ CC="$CC" house test-heat || faults=1
+    env -u MAKEFLAGS -u MFLAGS -u BUILD "$MAKE" -s -C "$folder"/fibrad-*/ CC="$CC" house test-heat || faults=1
 fi
 variant gcc -O1 "" "" sse2 avx2
 variant gcc -O2 "" "" scalar sse2 avx2 avx512
