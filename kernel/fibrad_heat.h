@@ -98,7 +98,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *   a given temperature       T            0 or NaN  not used
  *   a given power P           NaN          P         0, R: a first guess of T, or NaN
  *   a power that varies       NaN          P         h, R: the sphere gives off P - h sigma (T^4 - R^4)
- *   emissivity 0, no contact  T            0 or NaN  not used
+ *   emissivity 0, no contact and no film
+ *                             T            0 or NaN  not used
  *                             NaN          0         0, NaN
  *
  * `storage` makes the solution an implicit step in time. A sphere of heat capacity C that has the temperature R at the
@@ -137,7 +138,7 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * The residual is the error of the equations for J, relative to what drives the radiation: differences of emission,
  * given powers and light. tolerance = 0 stands for one of three numbers:
- *   1e-12  up to 16 spheres, and no contacts
+ *   1e-12  up to 16 spheres, no contacts and no films
  *   1e-5   else, if a temperature is unknown and its storage is 0
  *   1e-3   else
  * The search also goes on until the power of each wall is settled to the tolerance. The tolerance is here relative to
@@ -208,10 +209,10 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, and there are contacts or the powers do not
- *            add up to zero
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, there is no film, and there are contacts or
+ *            the powers do not add up to zero
  *            _UNSETTLED: the search has not ended after sweeps_max sweeps; there is no solution
- *   Level    If all temperatures are unknown and nothing escapes, any level of temperatures would do. The mean
+ *   Level    If all temperatures are unknown, nothing escapes and there is no film, any level would do. The mean
  *            emission, weighted by emissivity and area, is then that of the surroundings. */
 int fibrad_heat_step(fibrad_heat *heat, int *solved);
 
@@ -219,8 +220,8 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
  *
  * A net power is above 0 where a surface gains heat, by radiation, through contacts and through its film. A given power
  * has the other sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they
- * were found or given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact; or only a
- * temperature below zero would give the power.
+ * were found or given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact and no film; or
+ * only a temperature below zero would give the power.
  *
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean

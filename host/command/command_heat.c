@@ -70,7 +70,7 @@ static int heat_help(void) {
     options_help(
         "heat",
         "fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
-        "Net radiative powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
+        "Net powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
         "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n",
         heat_table,
         (const char *const[]){
@@ -80,7 +80,7 @@ static int heat_help(void) {
             "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
             "for the spheres that the list or column leaves out. A power is given off from inside, so the net power\n"
             "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
-            "reflects everything, gains nothing and has no temperature.\n",
+            "reflects everything; without contacts and convection it gains nothing and has no temperature.\n",
             "--error E holds for the powers of the spheres together, for each wall, for the surroundings if a wall is\n"
             "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
             "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
@@ -88,9 +88,8 @@ static int heat_help(void) {
             LIGHT_MORE, CONTACTS_MORE, FILM_MORE,
             "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
             "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
-            "the temperature of a wall (zmin:temperature=@TABLE) or of the surroundings. The .csv then has the time "
-            "in\n"
-            "its first column. A series of .vtp has a .pvd for ParaView.\n",
+            "the temperature of a wall (zmin:temperature=@TABLE), of the surroundings or of gas. The .csv then has\n"
+            "the time in its first column. A series of .vtp has a .pvd for ParaView.\n",
             "@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
             "which. Beyond the ends of a table its first or last value is taken, with a warning.\n",
             "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
@@ -98,7 +97,7 @@ static int heat_help(void) {
             "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
             "T_centre_K, T_centre_error_K. The unit of length must be known.\n",
             "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
-            "i = -1. Walls are i = -2, -3, ... with their names in the column `body`. All q_W add up to zero.\n",
+            "i = -1. Walls are i = -2, -3, ... with their names in the column `body`, then gas. All q_W add up to 0.\n",
             "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
             "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
             "error are relative to what the spheres emit, or to what they absorb if that is more.\n",

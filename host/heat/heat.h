@@ -110,8 +110,7 @@ option_take irradiate_option, absorptivity_option;
 /* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);
 
-/* ---- convection: heat that spheres and walls exchange with gas of a given temperature -----------------------------
- */
+/* ---- convection: heat that spheres and walls exchange with gas of a given temperature ---------------------------- */
 
 /* Rows of a table of options, for a request with a field `film`: with braces, and without. */
 #define OPTIONS_FILM(request)                                                                                          \

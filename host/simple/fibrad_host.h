@@ -5,7 +5,7 @@
  *   bed      spheres and walls: made, moved, freed          fibrad_bed_new, _move, _free
  *            facts, where an error is, probable mistakes    fibrad_bed_describe, _warnings
  *   factors  view factors and exchange factors of a bed     fibrad_bed_factors, fibrad_bed_matrix_free
- *            area of a wall, its row; all in one call       fibrad_bed_wall_area, _wall_row, fibrad_view_factors
+ *            area and row of a wall; a bed's factors        fibrad_bed_wall_area, _wall_row, fibrad_view_factors
  *   heat     net powers and temperatures                    fibrad_bed_solve; fibrad_bed_sides: of triangles
  *            numbers of directions, points and patches      fibrad_bed_beams
  *            light from outside, first hits included        fibrad_bed_shine
@@ -345,9 +345,9 @@ typedef struct fibrad_span {
  *   temperature, storage, reference     not used
  *   power                               constant
  *   emissivity, wall_emissivity         constant, or where a law begins
- *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: to be found
+ *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: a wall's is to be found
  *   wall_power, insulated, side_temperature    constant
- *   conductivity, conductance, film     constant, or changed by a law; contacts act on means of surfaces
+ *   conductivity, conductance, film, wall_film    constant, or changed by a law; contacts act on means of surfaces
  *   sigma, sweeps_max                   as for fibrad_bed_solve
  *   tolerance                           residual of a stage by patches; 0: a tenth of the span's tolerance
  *
