@@ -1,5 +1,6 @@
 # test_bed.py - powers and temperatures from Python against closed forms. SPDX-License-Identifier: MIT
 import copy
+import math
 import pickle
 import re
 import threading
@@ -485,3 +486,22 @@ def test_spans_that_cannot_be():
             (300, 1, {"walls_end": "zmax:temperature=3"}, "no wall 'zmax'")):
         with pytest.raises(fibrad.InputError, match=text):
             bed.advance(temperature, duration, **{**good, **options})
+
+
+def test_convection_is_a_film():
+    """A sphere that reflects everything follows gas; a wall that does gives its power to gas."""
+    box = [f"{side}:at={at}:temperature=400" for side, at in
+           (("xmax", 2), ("ymin", -2), ("ymax", 2), ("zmin", -2), ("zmax", 2))]
+    bed = fibrad.Bed([[0.0, 0, 0]], 1.0, walls=["xmin:at=-2:power=200:emissivity=0:convection=5:gas=310", *box])
+    powers = bed.solve(None, 0.0, power=100.0, convection=2.0, gas_temperature=350.0)
+    assert powers.temperatures[0] == pytest.approx(350 + 100 / (2 * 4 * math.pi), rel=1e-12)
+    assert powers.wall_temperatures["xmin"] == pytest.approx(310 + 200 / (5 * 16), rel=1e-12)
+    assert powers.gas == pytest.approx(300, rel=1e-12)
+    assert powers.convected[0] == pytest.approx(-100, rel=1e-12)
+    assert abs(powers.balance) < 1e-9
+    rate = 2 * 4 * math.pi / 1000
+    later = bed.advance(300.0, 20.0, capacity=1000.0, emissivity=0.0, convection=2.0, gas_temperature=300.0,
+                        gas_temperature_end=400.0, step=0.05)
+    assert later.temperatures[0] == pytest.approx(300 + 5 * (20 - (1 - math.exp(-rate * 20)) / rate), abs=1e-5)
+    with pytest.raises(fibrad.Error, match="need each other"):
+        bed.solve(None, 0.0, power=0.0, convection=2.0)

@@ -73,8 +73,10 @@ class Powers:
         [W] part of `walls` that comes through contacts, by name.
     wall_convected
         [W] part of `walls` that comes from gas, by name.
-    gas, gas_error
-        [W] net power of the gas, and its estimated error.
+    gas
+        [W] net power of the gas.
+    gas_error
+        [W] estimated error of `gas`.
     contact_flows
         [W] (m,) what each contact conducts from i to j.
     error
@@ -145,8 +147,10 @@ class Advance:
         [W] (n,) net radiative power of each sphere at the end.
     walls
         [J] energy that each wall has gained, by name.
-    surroundings, gas
-        [J] energy that the surroundings have gained, and the gas of `convection`.
+    surroundings
+        [J] energy that the surroundings have gained.
+    gas
+        [J] energy that the gas of `convection` has gained.
     steps
         Steps that were taken.
     refused
