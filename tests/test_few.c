@@ -243,21 +243,28 @@ TEST(light_goes_on_from_a_sphere_that_no_window_meets) {
     ck_assert_double_le(whole - direct, .2 * free_of(&bed, 0, 1));
 }
 
+/* The powers of two spheres of these emissivities and temperatures in surroundings of 0 K, and their estimated errors.
+ */
+static void heat_of(const struct bed *bed, const double e[2], const double temperature[2], double power[2],
+                    double error[2]) {
+    const fibrad_spheres spheres = spheres_of(bed);
+    OWNED_MADE *radiation = NULL;
+    fibrad_heat_sources sources;
+    fibrad_heat_result result = {.power = power, .power_error = error};
+    fibrad_heat_sources_init(&sources);
+    sources.temperature = temperature, sources.emissivity = e, sources.surroundings = 0, sources.sigma = 1e-12;
+    assert_ok(made_with(&radiation, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
+}
+
 /* The power of a cold sphere that only the other one heats, over what it would be without reflections back, is exact
  * among black spheres, and nearly so among grey ones. */
 LOOP_TEST(heat_of_two_far_spheres, FAR_COUNT * 4) {
     const double r = _i % 2 ? .1 : 1, d = FAR[_i / 4], grey = _i / 2 % 2 ? .8 : 1, e[] = {grey, grey};
     const double temperature[] = {0, 1000};
     OWNED_BED bed = BED({0, 0, 0, 1}, {.6 * d, -.48 * d, .64 * d, r});
-    const fibrad_spheres spheres = spheres_of(&bed);
-    OWNED_MADE *radiation = NULL;
-    fibrad_heat_sources sources;
     double power[2], error[2];
-    fibrad_heat_result result = {.power = power, .power_error = error};
-    fibrad_heat_sources_init(&sources);
-    sources.temperature = temperature, sources.emissivity = e, sources.surroundings = 0, sources.sigma = 1e-12;
-    assert_ok(made_with(&radiation, NULL, &spheres, NULL, NULL));
-    assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
+    heat_of(&bed, e, temperature, power, error);
     const double exact = 4 * pi * grey * far_exchange(grey, free_of(&bed, 0, 1), free_of(&bed, 1, 0));
     ck_assert_double_eq_tol(power[0] / exact, 1, grey < 1 ? 1e-3 : 1e-6);
     ck_assert_double_le(fabs(power[0] - exact), error[0]);
@@ -274,15 +281,8 @@ TEST(estimates_of_far_pairs) {
     for (int k = 0; k < PAIRS; k++) {
         const double *e = emissivity[k / 6 % 5], r = radius[k / 30], d = distance[k % 6] * fmax(1, r);
         OWNED_BED bed = BED({0, 0, 0, 1}, {.6 * d, -.48 * d, .64 * d, r});
-        const fibrad_spheres spheres = spheres_of(&bed);
-        OWNED_MADE *radiation = NULL;
-        fibrad_heat_sources sources;
         double power[2], error[2];
-        fibrad_heat_result result = {.power = power, .power_error = error};
-        fibrad_heat_sources_init(&sources);
-        sources.temperature = temperature, sources.emissivity = e, sources.surroundings = 0, sources.sigma = 1e-12;
-        assert_ok(made_with(&radiation, NULL, &spheres, NULL, NULL));
-        assert_ok(fibrad_bed_solve(radiation, &sources, NULL, &result));
+        heat_of(&bed, e, temperature, power, error);
         const double f = free_of(&bed, 0, 1), back = f * free_of(&bed, 1, 0) * (1 - e[1]) * 8 / 3, area = 4 * pi;
         const double right[] = {-area * e[0] * (1 - e[0] * back),
                                 area * e[0] * e[1] * f / (1 - (1 - e[0]) * back * 8 / 3)};

@@ -70,9 +70,8 @@ uint32_t fibrad_contact_root(fibrad_contact_parts *parts, uint32_t node);
 /* Adds to `to` what nodes gain through contacts and films at temperatures T. */
 void fibrad_contact_gains(const fibrad_contacts *contacts, const double *temperature, double *to);
 
-/* The sum over contacts and films of g times the product of the differences of a and b, which count 0 on nodes that are
- * not free.
- */
+/* The sum over contacts and films of g times the product of the differences of a and b. On nodes that are not free
+ * these count 0. */
 double fibrad_contact_product(const fibrad_contacts *contacts, const double *a, const double *b);
 
 /* Finds contacts->warming, the change of E of free nodes that takes away contacts->load: (stiff + G) warming = load. */

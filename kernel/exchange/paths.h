@@ -16,8 +16,8 @@
 
 /* The ball is steady inside, and its net power is 0. Let e be its emissivity, k* its relative conductivity and
  * a = e/(2 k*). Of what the ball absorbs in a pattern of degree l (spherical harmonics) it gives off a/(a + l) in the
- * same pattern: docs/methods.md section 26. So what is absorbed at one point is given off at the angle g from that
- * point with the density
+ * same pattern: docs/methods.md section 26. What is absorbed at one point is given off elsewhere. At the angle g from
+ * that point its density is
  *
  *     K(g) = integral over t from 0 to 1 of a t^(a-1) P_t(g),   P_t(g) = (1 - t^2)/(4 pi (1 + t^2 - 2 t cos g)^(3/2)).
  *

@@ -57,9 +57,10 @@ double fibrad_rings_sees(double radius, double other, double distance, double co
 /* A spot of one temperature around the axis through which heat enters a sphere.
  *   Input    size: its radius over that of the sphere
  *            biot: as in fibrad_ringed
- *   Output   response: mean emission of the spot, minus that of the sphere, for one unit of absorbed power over area
- * that is spread in this ring alone, over the share of the ring Result   by how much less the spot emits, for a unit of
- * power over the sphere's area that enters through it, than if the sphere did not radiate and had no film */
+ *   Output   response: for one unit of absorbed power over area that is spread in this ring alone, over the share of
+ *            the ring: mean emission of the spot, minus that of the sphere
+ *            returned: for a unit of power over area that enters through the spot, by how much less the spot emits than
+ *            if the sphere did not radiate and had no film */
 double fibrad_rings_spot(const fibrad_rings *rings, double size, const double emissivity[FIBRAD_RINGS],
                          double unevenness, double biot, fibrad_rings_work *work, double response[FIBRAD_RINGS]);
 
