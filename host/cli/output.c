@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,6 +166,14 @@ static bool open_temporary(struct output *output) {
     if (number < 0 && !name_temporary(output, &number)) return false;
     output->file = fdopen(number, "wb");
     return output->file;
+}
+
+int output_numbered(const char *pattern, int64_t frame, char path[OUTPUT_PATH]) {
+    const char *star = strchr(pattern, '*');
+    const int used =
+        star ? snprintf(path, OUTPUT_PATH, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, frame, star + 1)
+             : snprintf(path, OUTPUT_PATH, "%s", pattern);
+    return used >= OUTPUT_PATH ? message_at(STATUS_USAGE, pattern, 0, "the name is too long") : STATUS_OK;
 }
 
 int output_open(struct output *output, const char *path) {

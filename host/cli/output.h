@@ -3,6 +3,7 @@
 #define OUTPUT_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /* An output. A regular file gets its name when it is complete. Standard output, pipes and devices are written at once.
@@ -27,6 +28,10 @@ bool output_stdout(const char *path);
 /* Protects a file that this run reads: from now on no output may replace the file. Call it before reading. Status 0,
  * STATUS_USAGE if an open output would replace the file, or STATUS_MEMORY. */
 int output_spare(const char *path);
+
+/* The path of a frame: a * in the pattern becomes its number. Status 0, or STATUS_USAGE if the path is too long. */
+enum { OUTPUT_PATH = 4096 };
+int output_numbered(const char *pattern, int64_t frame, char path[OUTPUT_PATH]);
 
 /* Opens a new file without a name or with a temporary name. path NULL: opens nothing. If the path is a symbolic link,
  * the link stays and its target is written. An existing file keeps its permissions. Status 0, STATUS_FILE,

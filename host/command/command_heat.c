@@ -134,7 +134,7 @@ static int check_heat(struct heat *h) {
     status = contacts_check(&h->contacts, &h->options, h->solid.given);
     if (!status) status = time_check(&h->time, &h->options);
     if (!status) status = light_check(&h->light, &h->options, &h->emissivities);
-    if (!status) status = film_check(&h->film, &h->options, h->given.zero, h->given.timed);
+    if (!status) status = film_check(h);
     return status ? status : given_check(&h->given, &h->options);
 }
 

@@ -212,9 +212,9 @@ static void write_end(FILE *file, const struct bed *bed, const struct walls *wal
 
 int contacts_write(const struct contact_state *state, const struct bed *bed, const struct walls *walls) {
     struct output output = {0};
-    char path[CONTACT_PATH];
+    char path[OUTPUT_PATH];
     if (!state->options || !state->options->flows) return STATUS_OK;
-    int status = contact_path(state->options->flows, bed->frame, path);
+    int status = output_numbered(state->options->flows, bed->frame, path);
     if (!status) status = output_open(&output, path);
     if (status) return status;
     fputs("i,j,W/K,W,error_W\n", output.file);

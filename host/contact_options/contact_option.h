@@ -139,8 +139,4 @@ int contacts_resize(struct contact_lines *to, size_t n);
 /* Adds the contacts of a file. `path` may have a *, for the number of the frame. Status as contacts_begin. */
 int contacts_read(const char *path, const struct bed *bed, const struct walls *walls, struct contact_lines *to);
 
-/* The path of a frame: a * becomes its number. Status 0 or STATUS_USAGE. */
-enum { CONTACT_PATH = 4096 };
-int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]);
-
 #endif

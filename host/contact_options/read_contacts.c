@@ -9,14 +9,6 @@
 #include "text/read_lines.h"
 #include "text/unit.h"
 
-int contact_path(const char *pattern, int64_t frame, char path[CONTACT_PATH]) {
-    const char *star = strchr(pattern, '*');
-    const int used =
-        star ? snprintf(path, CONTACT_PATH, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, frame, star + 1)
-             : snprintf(path, CONTACT_PATH, "%s", pattern);
-    return used >= CONTACT_PATH ? message_at(STATUS_USAGE, pattern, 0, "the name is too long") : STATUS_OK;
-}
-
 /* The index of a sphere by its name. n: there is none. */
 static uint32_t find_sphere(const struct bed *bed, int64_t name) {
     const uint32_t i = targets_first(bed->ids ? bed->id : NULL, bed->n, (unsigned long long)name);
@@ -80,9 +72,9 @@ static int take_header(const struct lines *lines, const struct fields *fields, d
 int contacts_read(const char *pattern, const struct bed *bed, const struct walls *walls, struct contact_lines *to) {
     struct lines lines;
     struct fields fields = {0};
-    char path[CONTACT_PATH];
+    char path[OUTPUT_PATH];
     double unit = 1;
-    int status = contact_path(pattern, bed->frame, path);
+    int status = output_numbered(pattern, bed->frame, path);
     if (status) return status;
     status = lines_open(&lines, path);
     if (status) return status;

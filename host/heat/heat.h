@@ -150,29 +150,6 @@ struct film_state {
     double per_watt;              /* film over W/K */
 };
 
-/* Whether the options ask for films. */
-bool film_given(const struct film_options *options, const struct wall_options *walls);
-
-/* Checks the options when all have been read. zero: of the unit of temperatures [K]. Status 0, STATUS_USAGE, or as
- * curve_read. */
-int film_check(struct film_options *options, struct bed_options *bed, double zero, bool timed);
-
-/* Finds the films of a bed, whose unit of length is known, and points `sources` and `result` to them. Call film_free
- * also after an error. Status 0, STATUS_USAGE, STATUS_INPUT or STATUS_MEMORY. */
-int film_begin(struct film_state *state, const struct film_options *options, const char *file, const struct bed *bed,
-               const fibrad_bed *made, const struct walls *walls, double zero, double per_watt,
-               fibrad_heat_sources *sources, fibrad_heat_result *result);
-void film_free(struct film_state *state);
-
-/* Sets the temperatures of a table: now, and at the end of a span. */
-void film_at(struct film_state *state, const struct film_options *options, uint32_t spheres, uint32_t walls,
-             double zero, double now, double end);
-
-/* Scales results to watts, and reports them. */
-void film_scale(struct film_state *state, uint32_t spheres, uint32_t walls, fibrad_heat_result *result);
-void film_report(const struct film_state *state, const struct film_options *options, const struct walls *walls,
-                 const fibrad_heat_result *result, struct report *report);
-
 /* ---- a run of `fibrad heat`: what the options say, the bed in hand, its heat problem and the result -------------- */
 
 #define SECONDS_MAX 1e15
@@ -374,6 +351,23 @@ void light_add(struct heat *heat);
 
 /* Reports what is absorbed, reflected and transmitted. */
 void light_report(struct heat *heat);
+
+/* film.c: whether the options ask for films. Checks the options when all have been read. Status 0, STATUS_USAGE, or as
+ * curve_read. */
+bool film_given(const struct heat *heat);
+int film_check(struct heat *heat);
+
+/* Finds the films of a bed, and points the sources and the result to them. per_watt: a conductance of the library over
+ * W/K. Call film_free also after an error. Status 0, STATUS_USAGE, STATUS_INPUT or STATUS_MEMORY. */
+int film_begin(struct heat *heat, double per_watt);
+void film_free(struct film_state *state);
+
+/* Sets the temperatures of a table: now, and at the end of a span. */
+void film_at(struct heat *heat, double now, double end);
+
+/* Scales results to watts, and reports them. */
+void film_scale(struct heat *heat);
+void film_report(struct heat *heat);
 
 /* profile.c: finds the axis of r. Status 0, or STATUS_USAGE if there is none. */
 int profile_begin(struct heat *heat);

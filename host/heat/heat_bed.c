@@ -70,10 +70,10 @@ static void warn_levels(struct heat *h) {
 
 /* Reads what is given of spheres and walls, and makes sure of the unit of length. */
 static int read_values(struct heat *h, struct bed *bed) {
-    const char *needed = h->solid.given                            ? SOLID_NEEDS
-                         : contacts_given(&h->contacts)            ? CONTACTS_NEED
-                         : film_given(&h->film, &h->options.walls) ? "--convection needs"
-                                                                   : NULL;
+    const char *needed = h->solid.given                 ? SOLID_NEEDS
+                         : contacts_given(&h->contacts) ? CONTACTS_NEED
+                         : film_given(h)                ? "--convection needs"
+                                                        : NULL;
     struct walls opened;
     int status = bed_options_walls(&h->options, bed, &h->walls);
     if (!status) status = given_values(&h->given, bed, h->options.name, &h->walls, &h->values);
@@ -86,8 +86,7 @@ static int read_values(struct heat *h, struct bed *bed) {
     opened = h->walls;
     if (!status) status = face_begin(h, &opened);
     if (!status) status = light_begin(h);
-    if (!status && !h->given.timed && !contacts_given(&h->contacts) &&
-        !film_given(&h->film, &h->options.walls)) /* joined: by the library */
+    if (!status && !h->given.timed && !contacts_given(&h->contacts) && !film_given(h)) /* joined: by the library */
         status = given_reflectors(&h->values, h->emissivity, &h->walls, h->wall_emissivity, bed, h->options.name);
     if (!status) status = bed_options_metres(&h->options, bed, needed);
     return status ? status : bed_options_make(&h->options, bed, &opened, &h->made);
@@ -125,9 +124,7 @@ int heat_begin(struct heat *h, struct bed *bed) {
         contacts_begin(&h->touching, &h->contacts, &h->options, bed, h->made, &h->walls, &h->solid, 1 / unit, sources);
     contacts_result(&h->touching, &h->result);
     if (!status) join_insulated(h);
-    if (!status)
-        status = film_begin(&h->films, &h->film, h->options.name, bed, h->made, &h->walls, h->given.zero, 1 / unit,
-                            sources, &h->result);
+    if (!status) status = film_begin(h, 1 / unit);
     return status;
 }
 

@@ -163,7 +163,7 @@ void heat_report(struct heat *h) {
     face_report(h);
     light_report(h);
     contacts_report(&h->touching, h->bed, &h->walls, report);
-    film_report(&h->films, &h->film, &h->walls, &h->result, report);
+    film_report(h);
     if (h->conductivity) report_solid(h);
     report_value(report, "balance_of_emission", f->balance_of_emission, 2);
     report_value(report, "error_of_emission", f->throughput > 0 ? f->error / f->throughput : 0, 2);

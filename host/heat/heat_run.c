@@ -125,7 +125,7 @@ int heat_solve(struct heat *h) {
     warn_hot(&h->options.warned, h->figures.hottest);
     scale_result(h, square_metres);
     contacts_scale(&h->touching, h->bed->n, h->walls.count);
-    film_scale(&h->films, h->bed->n, h->walls.count, &h->result);
+    film_scale(h);
     light_scale(h, square_metres);
     heat_find_figures(h);
     h->seconds = progress_clock() - begun;

@@ -233,7 +233,7 @@ static int show_triangles(struct time_run *m) {
 static int solve_state(struct time_run *m, fibrad_heat_sources *shown) {
     struct heat *h = m->heat;
     *shown = m->sources;
-    film_at(&h->films, &h->film, m->bed.n, h->walls.count, h->given.zero, m->now, m->now);
+    film_at(h, m->now, m->now);
     shown->temperature = m->span.temperature;
     heat_follow(h, shown->temperature, m->wall, h->emissivity, NULL);
     heat_excess_of(h, shown->temperature, m->wall, m->excess);
@@ -267,7 +267,7 @@ static int advance(struct time_run *m, double time) {
     outside_at(m, time, wall, &surroundings);
     m->span.duration = time - m->now;
     m->span.wall_temperature = wall, m->span.surroundings = &surroundings;
-    film_at(&m->heat->films, &m->heat->film, m->bed.n, m->heat->walls.count, m->heat->given.zero, m->now, time);
+    film_at(m->heat, m->now, time);
     const int status = fibrad_bed_advance(m->heat->made, &m->sources, &m->span);
     warn_made(&m->heat->options.warned, m->heat->bed, &m->heat->walls, m->heat->made, m->heat->given.zero == 0);
     if (status) return library_status(m, status);

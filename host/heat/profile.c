@@ -113,9 +113,9 @@ int profile_write(const struct heat *h, const struct contents *what) {
     struct heat_column column[HEAT_COLUMNS];
     struct output output = {0};
     struct bins bins = {0};
-    char path[CONTACT_PATH];
+    char path[OUTPUT_PATH];
     if (!profile->path || h->bed->n == 0) return STATUS_OK;
-    int status = contact_path(profile->path, what->bed->frame, path);
+    int status = output_numbered(profile->path, what->bed->frame, path);
     if (!status) status = output_open(&output, path);
     if (!status) status = make_bins(h, &bins);
     if (!status) {

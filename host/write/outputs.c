@@ -133,12 +133,10 @@ int outputs_open(struct outputs *outputs) {
 
 /* Writes a frame into a file of its own. */
 static int write_alone(const struct outputs *outputs, size_t k, const struct contents *what, int64_t number) {
-    const char *pattern = outputs->to[k].path, *star = outputs->to[k].star;
-    char path[PATH_MAX];
+    char path[OUTPUT_PATH];
     struct output file = {0};
-    const int used = snprintf(path, sizeof path, "%.*s%" PRId64 "%s", (int)(star - pattern), pattern, number, star + 1);
-    if (used >= (int)sizeof path) return message_at(STATUS_FILE, pattern, 0, "the name is too long");
-    int status = check_others(outputs, k, path);
+    int status = output_numbered(outputs->to[k].path, number, path);
+    if (!status) status = check_others(outputs, k, path);
     if (!status) status = output_open(&file, path);
     if (!status) status = outputs->to[k].format->write[outputs->content](file.file, what);
     return output_close(&file, status);
