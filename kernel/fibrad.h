@@ -193,6 +193,8 @@ typedef struct fibrad_spheres {
     uint32_t n;                /* 0 to FIBRAD_SPHERES_MAX */
     uint32_t stride, stride_r; /* number of doubles from one sphere to the next; 0 means 1 */
     const uint64_t *id;        /* [n], ids seed random paths and decide ties; NULL: the index is the id */
+    const uint32_t *clump;     /* [n], number of the clump, a body of spheres that may lie within one another; 0: the
+                                  sphere is alone; NULL: there are no clumps */
 } fibrad_spheres;
 
 typedef enum fibrad_wall_kind {
@@ -327,8 +329,12 @@ typedef struct fibrad_fault {
 } fibrad_fault;
 
 /* Bytes that fibrad_scene_init needs for n spheres: 5 KB, 53 per sphere, and 8 more per sphere if ids is 1, for
- * fibrad_spheres.id. Triangles need more: fibrad_triangles_size. 0: n is above FIBRAD_SPHERES_MAX. */
+ * fibrad_spheres.id. Triangles need more: fibrad_triangles_size. Clumps need more: fibrad_clumps_size. 0: n is above
+ * FIBRAD_SPHERES_MAX. */
 size_t fibrad_scene_size(uint32_t n, int ids);
+
+/* Bytes that fibrad_spheres.clump adds to a scene of n spheres. 0: n is above FIBRAD_SPHERES_MAX. */
+size_t fibrad_clumps_size(uint32_t n);
 
 /* An upper bound of fibrad_scene_size(n, 0), for static memory. */
 #define FIBRAD_SCENE_BYTES(n) (5632 + (size_t)(n)*64)
@@ -336,9 +342,11 @@ size_t fibrad_scene_size(uint32_t n, int ids);
 /* Makes a scene.
  *
  * Centres on a periodic axis are moved into the box. The box begins at the least coordinate of all centres. Spheres
- * may overlap each other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond
- * a wall. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
- *   Input    memory[size]: at least fibrad_scene_size(n, ids) + fibrad_triangles_size(triangles, n) bytes
+ * may overlap each other and the walls, as they do in settled beds. No centre may lie beyond a wall, or inside another
+ * sphere that is not of the same clump. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the
+ * wall at once. Members of a clump whose centres agree are moved apart by 1e-12 radii.
+ *   Input    memory[size]: at least fibrad_scene_size(n, ids) bytes, and fibrad_triangles_size(triangles, n) and
+ *            fibrad_clumps_size(n) if there are triangles and clumps
  *            config: NULL for all defaults
  *            spheres
  *   Output   scene: a pointer into memory

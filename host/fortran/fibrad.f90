@@ -85,7 +85,7 @@ module fibrad
     type, bind(C) :: fibrad_spheres
         type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr, r = c_null_ptr
         integer(c_int32_t) :: n = 0, stride = 0, stride_r = 0
-        type(c_ptr) :: id = c_null_ptr
+        type(c_ptr) :: id = c_null_ptr, clump = c_null_ptr
     end type fibrad_spheres
 
     type, bind(C) :: fibrad_fault

@@ -58,6 +58,7 @@ static size_t copy_given(struct given *given, char *place) {
     copy_doubles(&place, &count, &s->y, s->n, stride);
     copy_doubles(&place, &count, &s->z, s->n, stride);
     copy_doubles(&place, &count, &s->r, s->n, stride_r);
+    copy_bytes(&place, &count, (const void **)&s->clump, s->clump ? s->n * sizeof *s->clump : 0);
     copy_bytes(&place, &count, (const void **)&given->config.wall, given->config.walls * sizeof *given->config.wall);
     copy_doubles(&place, &count, &t->x, t->vertices, stride_t);
     copy_doubles(&place, &count, &t->y, t->vertices, stride_t);

@@ -93,6 +93,7 @@ struct fibrad_scene {
     uint32_t *place;                                     /* [n], position of the caller's sphere i in scene order */
     uint32_t *start;                                     /* [cells + 1], position of the first sphere of each cell */
     uint64_t *id;                                        /* [n], by the caller's index; NULL: the index is the id */
+    uint32_t *clump;                                     /* [n], in scene order; NULL: no sphere is in a clump */
     fibrad_mesh mesh;
     unsigned char *cut; /* [n], 1: a wall cuts the sphere, so that a cap of it lies behind the wall */
     float *clear; /* [n], lower bound of the distance to the nearest triangle over the radius; NULL: no triangles */
@@ -123,6 +124,11 @@ static inline uint64_t fibrad_scene_id(const fibrad_scene *scene, uint32_t i) {
  * matter. */
 static inline uint64_t fibrad_scene_rank(const fibrad_scene *scene, uint32_t place) {
     return fibrad_scene_id(scene, scene->order[place]);
+}
+
+/* Whether spheres at two places in scene order are members of one clump. */
+static inline bool fibrad_one_clump(const fibrad_scene *scene, uint32_t a, uint32_t b) {
+    return scene->clump != NULL && scene->clump[a] != 0 && scene->clump[a] == scene->clump[b];
 }
 
 /* Whether sphere a at `at` comes before sphere b at `other` if both are equally far: the lower id comes first. Of two

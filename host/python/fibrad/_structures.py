@@ -54,7 +54,8 @@ class SceneConfig(Structure):
 
 class Spheres(Structure):
     _fields_ = [("x", POINTER(c_double)), ("y", POINTER(c_double)), ("z", POINTER(c_double)), ("r", POINTER(c_double)),
-                ("n", c_uint32), ("stride", c_uint32), ("stride_r", c_uint32), ("id", POINTER(c_uint64))]
+                ("n", c_uint32), ("stride", c_uint32), ("stride_r", c_uint32), ("id", POINTER(c_uint64)),
+                ("clump", POINTER(c_uint32))]
 
 
 class Fault(Structure):
