@@ -2,6 +2,7 @@
  */
 #include "base/arena.h"
 #include "base/dispatch.h"
+#include "patches/clumps.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
@@ -102,6 +103,17 @@ static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
     heat->checked = fibrad_arena_take(arena, 1, sizeof *heat->checked);
 }
 
+/* Takes the arrays of clumps, if the scene has any. */
+static void take_clumps(fibrad_arena *arena, fibrad_heat *heat) {
+    heat->end = heat->contacts.node, heat->film = heat->contacts.film, heat->gas = heat->contacts.gas;
+    if (heat->scene->clump == NULL) return;
+    heat->end = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *heat->end);
+    fibrad_arena_doubles(arena, heat->bodies, (double **const[]){&heat->film, &heat->gas, NULL});
+    heat->clumps.leader = fibrad_arena_take(arena, heat->spheres, sizeof *heat->clumps.leader);
+    heat->clumps.first_cap = fibrad_arena_take(arena, heat->spheres + (size_t)1, sizeof *heat->clumps.first_cap);
+    heat->clumps.cap = fibrad_arena_take(arena, heat->clumps.room, sizeof *heat->clumps.cap);
+}
+
 /* Takes the arrays from the arena. The caller copies the object itself to the address that is returned. */
 static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
@@ -132,6 +144,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
         h->value = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits * h->many, sizeof *h->value);
     }
     take_contacts(arena, heat);
+    take_clumps(arena, heat);
     fibrad_arena_doubles(arena, spheres,
                          (double **const[]){&heat->sources.conductivity, &heat->sources.unevenness, NULL});
     heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
@@ -167,6 +180,8 @@ static int dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, c
     const uint64_t nodes = fibrad_heat_count_nodes(heat);
     if (nodes > HEAT_NODES_MAX) return FIBRAD_E_UNSUPPORTED;
     add_room(heat, (uint32_t)nodes);
+    const size_t caps = fibrad_heat_count_caps(scene);
+    heat->clumps.room = caps + caps / 4;
     heat->pencils.room = fibrad_heat_room(heat);
     return FIBRAD_OK;
 }
@@ -225,6 +240,7 @@ static void forget_beams(fibrad_heat *heat) {
     heat->patches += FIBRAD_HEAT_FOUR * heat->division.fours;
     number_patches(heat);
     fibrad_heat_divide(heat);
+    fibrad_heat_find_clumps(heat);
     fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
     fibrad_zero(heat->traced, fibrad_heat_tasks(heat));
     heat->pencils.used = heat->pencils.links = 0;
@@ -361,12 +377,13 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     for (uint32_t b = 0; b < heat->given_walls; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
     if (scene->container.openings != heat->openings) return FIBRAD_E_ARGUMENT;
+    if ((scene->clump != NULL) != (heat->clumps.leader != NULL)) return FIBRAD_E_ARGUMENT;
     if (!same_triangles(heat, scene)) return FIBRAD_E_ARGUMENT;
     fibrad_heat next = *heat;
     dimension(&next, &heat->config, scene);
     const uint64_t nodes = fibrad_heat_count_nodes(&next);
     if (nodes > heat->division.nodes_capacity || next.patches + FIBRAD_HEAT_FOUR * nodes > heat->patches_capacity ||
-        next.rays > heat->rays_capacity)
+        next.rays > heat->rays_capacity || fibrad_heat_count_caps(scene) > heat->clumps.room)
         return FIBRAD_E_SIZE;
     if (heat->solution.warm) drop_fine(heat), carry_over(heat, &next);
     *heat = next;
