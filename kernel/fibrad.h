@@ -74,6 +74,7 @@
  *   pair       two spheres with nothing in between      fibrad_pair_exact
  *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _wall_area, _sphere
  *              centres inside other spheres             fibrad_spheres_inside
+ *              clumps: what is exposed of a member      fibrad_clumps_size, fibrad_scene_exposed_area
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init
@@ -315,8 +316,9 @@ typedef enum fibrad_why {
     FIBRAD_WHY_TOUCHED = 25,      /* A wall with a contact or a film is insulated, or its sides have temperatures. */
     FIBRAD_WHY_ALONE = 26,        /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
     FIBRAD_WHY_FILM = 27,         /* A film is negative or out of range, or the temperature of its gas is. */
-    FIBRAD_WHY_CLUMP = 28,        /* The members of a clump have different temperatures, or only some have one. */
-    FIBRAD_WHY_SOLID_CLUMP = 29   /* A member of a clump has a finite conductivity. */
+    FIBRAD_WHY_CLUMP = 28,        /* A clump touches its own image in the next period. */
+    FIBRAD_WHY_CLUMP_HEAT = 29,   /* Members of a clump have different temperatures, or only some have one. */
+    FIBRAD_WHY_CLUMP_SOLID = 30   /* A member of a clump has a finite conductivity. */
 } fibrad_why;
 
 /* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */
@@ -354,8 +356,8 @@ size_t fibrad_clumps_size(uint32_t n);
  *   Output   scene: a pointer into memory
  *            fault: where an error is; may be NULL. After FIBRAD_OK `fault` is as before.
  *   Errors   _ARGUMENT, _SIZE, _ISA, _ENDLESS, _UNSUPPORTED (more than FIBRAD_WALLS_MAX walls)
- *            _GEOMETRY: a centre lies inside another sphere, a sphere reaches beyond an opening, or a period is less
- *            than the largest radius
+ *            _GEOMETRY: a centre lies inside another sphere, a sphere reaches beyond an opening, a period is less than
+ *            the largest radius, or a clump touches its own image
  *            After an error an earlier scene in the same memory may be lost.
  *   Cost     0.5 microseconds per sphere. Clusters that lie far apart take longer, O(n^2) at worst.
  *   Source   docs/methods.md section 6 */
@@ -385,10 +387,22 @@ typedef struct fibrad_scene_facts {
     double overlap_max;            /* largest overlap of two spheres, divided by the smaller radius; 0: none overlap */
     uint32_t overlap_pair[2];      /* the two spheres of the largest overlap */
     uint32_t triangles;            /* number of triangles */
+    uint32_t clumps;               /* number of clumps */
+    uint32_t covered;              /* number of members without a surface: they lie within other members */
+    uint32_t covered_sphere;       /* one of them */
+    uint32_t parted;               /* number of clumps in parts that do not touch, with gaps above .001 radii */
+    uint32_t parted_pair[2];       /* two members of such a clump, of different parts */
 } fibrad_scene_facts;
 
 /* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
+
+/* Area of a sphere that no other member of its clump hides [L^2], to rounding. Walls and other spheres hide nothing of
+ * it. For a sphere that is alone this is 4 pi r^2.
+ *   Input    i: 0 to spheres - 1
+ *   Output   NaN: i is out of range, or the scene is not complete
+ *   Source   docs/methods.md section 5 */
+double fibrad_scene_exposed_area(const fibrad_scene *scene, uint32_t i);
 
 /* Area of a wall or an opening [L^2]: the part that bounds the container, in one period. For a mesh this is the sum
  * over all sides that belong to the wall.

@@ -105,7 +105,8 @@ module fibrad
         integer(c_int) :: isa = 0
         integer(c_int32_t) :: cells = 0
         real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
-        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0
+        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0, clumps = 0, covered = 0, covered_sphere = 0, &
+            parted = 0, parted_pair(2) = 0
     end type fibrad_scene_facts
 
     type, bind(C) :: fibrad_warning

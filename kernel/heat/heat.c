@@ -2,7 +2,7 @@
  */
 #include "base/arena.h"
 #include "base/dispatch.h"
-#include "patches/clumps.h"
+#include "patches/clump_caps.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
@@ -209,6 +209,33 @@ static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
     return b < beyond + FIBRAD_WALLS ? heat->wall[b - beyond].unbounded : 1;
 }
 
+/* The normal where the beam of a point leaves. */
+static void normal_of_beam(const fibrad_disc_points *set, const double frame[9], uint32_t p,
+                           double n[3]) {
+    const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+    for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+}
+
+/* Divides the beams that leave the exposed part of a member of a clump by its area. */
+static void correct_densities(fibrad_heat *heat) {
+    const uint32_t points = heat->config.points;
+    fibrad_disc_points set = {NULL, NULL};
+    if (fibrad_disc_points_get(points, &set) != FIBRAD_OK) return;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        uint32_t open = 0;
+        if (!fibrad_heat_is_member(heat, b)) continue;
+        for (uint32_t k = 0; k < heat->config.directions; k++) {
+            double frame[9], n[3];
+            fibrad_beam_frame(k, heat->config.directions, points, frame);
+            for (uint32_t p = 0; p < points; p++) {
+                normal_of_beam(&set, frame, p, n);
+                open += !fibrad_heat_is_hidden(heat, b, n);
+            }
+        }
+        if (open > 0) heat->density[b] = open / heat->scene->clumps.exposed[b];
+    }
+}
+
 /* Sets the first patch of each body, and how many beams leave each sphere per area. */
 static void number_patches(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
@@ -216,6 +243,7 @@ static void number_patches(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) heat->first[b + 1] = heat->first[b] + patches_of(heat, b);
     for (uint32_t b = 0; b < heat->spheres; b++)
         heat->density[b] = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
+    if (heat->clumps.some) correct_densities(heat);
 }
 
 /* Finds the patch of its sphere that each beam leaves. */
@@ -227,8 +255,7 @@ static void find_origins(fibrad_heat *heat) {
         double frame[9], n[3];
         fibrad_beam_frame(k, heat->config.directions, points, frame);
         for (uint32_t p = 0; p < points; p++) {
-            const double x = set.x[p], y = set.y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
-            for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+            normal_of_beam(&set, frame, p, n);
             heat->leave[k * points + p] = (uint16_t)fibrad_patch_of(n, heat->side);
         }
     }
@@ -236,11 +263,11 @@ static void find_origins(fibrad_heat *heat) {
 
 /* Prepares a problem for its scene. No beam has been followed. */
 static void forget_beams(fibrad_heat *heat) {
+    fibrad_heat_find_clumps(heat);
     fibrad_heat_divide_fours(heat);
     heat->patches += FIBRAD_HEAT_FOUR * heat->division.fours;
     number_patches(heat);
     fibrad_heat_divide(heat);
-    fibrad_heat_find_clumps(heat);
     fibrad_copy(heat->order, heat->scene->order, heat->spheres * sizeof *heat->order);
     fibrad_zero(heat->traced, fibrad_heat_tasks(heat));
     heat->pencils.used = heat->pencils.links = 0;

@@ -255,9 +255,9 @@ static int sphere_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uin
     if (why != FIBRAD_WHY_UNSAID) return why;
     if (!(conductivity > 0)) return FIBRAD_WHY_CONDUCTIVITY;
     if (!fibrad_heat_is_member(heat, b)) return FIBRAD_WHY_UNSAID;
-    if (fibrad_finite(conductivity)) return FIBRAD_WHY_SOLID_CLUMP;
+    if (fibrad_finite(conductivity)) return FIBRAD_WHY_CLUMP_SOLID;
     const double leader = s->temperature[heat->order[heat->clumps.leader[b]]], own = source.temperature;
-    return is_given(own) != is_given(leader) || (is_given(own) && own != leader) ? FIBRAD_WHY_CLUMP : FIBRAD_WHY_UNSAID;
+    return is_given(own) != is_given(leader) || (is_given(own) && own != leader) ? FIBRAD_WHY_CLUMP_HEAT : FIBRAD_WHY_UNSAID;
 }
 
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {

@@ -212,7 +212,7 @@ typedef struct fibrad_heat_cap {
     double at[3], beyond;
 } fibrad_heat_cap;
 
-/* The clumps of the scene (clumps.c). A clump of one sphere is none. */
+/* The clumps of the scene (clump_caps.c). A clump of one sphere is none. */
 typedef struct fibrad_heat_clumps {
     bool some;            /* there are clumps; otherwise the arrays are not used */
     uint32_t *leader;     /* [spheres], first body of the clump; FIBRAD_NONE: the sphere is alone */
@@ -295,6 +295,16 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
 /* Whether the temperature of a body is to be found. */
 static inline bool fibrad_heat_is_free(const fibrad_heat *heat, uint32_t body) {
     return heat->sources.storage[body] >= 0;
+}
+
+/* Whether a point of a sphere, by its normal, lies inside another member of its clump. */
+static inline bool fibrad_heat_is_hidden(const fibrad_heat *heat, uint32_t sphere, const double n[3]) {
+    bool hidden = false;
+    for (size_t k = heat->clumps.first_cap[sphere]; k < heat->clumps.first_cap[sphere + 1] && !hidden; k++) {
+        const fibrad_heat_cap *cap = &heat->clumps.cap[k];
+        hidden = n[0] * cap->at[0] + n[1] * cap->at[1] + n[2] * cap->at[2] > cap->beyond;
+    }
+    return hidden;
 }
 
 /* Whether a body is a member of a clump, and whether it takes its temperature from the clump's leader. */

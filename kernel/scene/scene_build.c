@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "base/arena.h"
 #include "base/dispatch.h"
+#include "scene/clumps.h"
 #include "scene/grid_walk.h"
 #include "scene/surroundings.h"
 #include "scene/walls.h"
@@ -25,11 +26,13 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     if (triangles > 0) fibrad_mesh_layout(arena, &mesh, triangles);
     float *clear = triangles > 0 ? fibrad_arena_take(arena, n, sizeof *clear) : NULL;
     uint32_t *clump = clumps ? fibrad_arena_take(arena, n, sizeof *clump) : NULL;
+    fibrad_clumps of_clumps = {0};
+    if (clumps) fibrad_clumps_layout(arena, n, &of_clumps);
     if (arena->base != NULL) {
         fibrad_zero(scene, sizeof *scene);
         scene->x = x, scene->y = y, scene->z = z, scene->r = r, scene->coarse = coarse;
         scene->order = order, scene->place = place, scene->start = start, scene->id = id;
-        scene->cut = cut, scene->mesh = mesh, scene->clear = clear, scene->clump = clump;
+        scene->cut = cut, scene->mesh = mesh, scene->clear = clear, scene->clump = clump, scene->clumps = of_clumps;
     }
     return scene;
 }
@@ -503,6 +506,14 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
         write_coarse(scene);
         status = each_overlap(scene, check_overlap, fault);
         if (status != FIBRAD_OK) return status;
+    }
+    if (scene->clump != NULL) {
+        uint32_t sphere = 0;
+        status = fibrad_clumps_build(scene, &sphere);
+        if (status != FIBRAD_OK) {
+            (void)sphere_fault(fault, sphere, FIBRAD_WHY_CLUMP);
+            return status;
+        }
     }
     if (scene->facts.triangles > 0) {
         status = build_mesh(scene, &config, fault);

@@ -69,7 +69,8 @@ class Run(Structure):
 class SceneFacts(Structure):
     _fields_ = [("spheres", c_uint32), ("walls", c_uint32), ("isa", c_int), ("cells", c_uint32),
                 ("radius_min", c_double), ("radius_max", c_double), ("overlap_max", c_double),
-                ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32)]
+                ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32), ("clumps", c_uint32), ("covered", c_uint32),
+                ("covered_sphere", c_uint32), ("parted", c_uint32), ("parted_pair", c_uint32 * 2)]
 
 
 class Warning(Structure):

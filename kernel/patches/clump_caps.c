@@ -1,14 +1,14 @@
-/* clumps.c - spheres that are one body: their leaders, and what of them lies inside one another.
+/* clump_caps.c - spheres that are one body: their leaders, and what of them lies inside one another.
  * SPDX-License-Identifier: MIT
  *
  * Members of a clump hide parts of each other. The part of a sphere inside another one is a cap. Whatever leaves or meets
  * a cap is no radiation. Lines that meet a clump meet it first outside of all caps. */
-#include "patches/clumps.h"
+#include "patches/clump_caps.h"
 #include "base/sort.h"
 #include "base/vector.h"
 #include "scene/grid_walk.h"
 
-/* Calls for the caps of the sphere at a place. to: where they are written; NULL: they are only counted. */
+/* Finds the caps of the sphere at a place. to: where they are written; NULL: they are only counted. */
 static size_t caps_of(const fibrad_scene *scene, uint32_t i, fibrad_heat_cap *to) {
     const double r = scene->r[i], centre[3] = {scene->x[i], scene->y[i], scene->z[i]};
     size_t count = 0;

@@ -1,7 +1,7 @@
-/* clumps.h - spheres that are one body: their leaders, and what of them lies inside one another.
+/* clump_caps.h - spheres that are one body: their leaders, and what of them lies inside one another.
  * SPDX-License-Identifier: MIT */
-#ifndef FIBRAD_PATCHES_CLUMPS_H
-#define FIBRAD_PATCHES_CLUMPS_H
+#ifndef FIBRAD_PATCHES_CLUMP_CAPS_H
+#define FIBRAD_PATCHES_CLUMP_CAPS_H
 
 #include "patches/problem.h"
 
