@@ -44,7 +44,7 @@ static fibrad_heat_sources sources_of_lumps(const struct lumps *l) {
     fibrad_heat_sources s;
     fibrad_heat_sources_init(&s);
     s.surroundings = l->around, s.temperature = l->t, s.emissivity = l->e, s.power = l->power, s.film = l->film;
-    s.gas = l->gas, s.wall_temperature = l->wall_t, s.wall_emissivity = l->wall_e;
+    s.tolerance = 1e-10, s.gas = l->gas, s.wall_temperature = l->wall_t, s.wall_emissivity = l->wall_e;
     return s;
 }
 
@@ -92,7 +92,7 @@ static struct lumps dumbbell(double d, double e) {
 /* Four unequal spheres with centres inside one another. */
 static struct lumps four(double e) {
     struct lumps l = {.at = {{0, 0, 0}, {.7, .1, 0}, {.2, .6, .3}, {-.4, -.2, .5}}, .r = {1, .8, .7, .6}, .n = 4};
-    for (int i = 0; i < 4; i++) l.clump[i] = 3, l.e[i] = e, l.t[i] = 800, l.power[i] = NAN;
+    for (int i = 0; i < 4; i++) l.clump[i] = 3, l.e[i] = e, l.t[i] = 400, l.power[i] = NAN;
     return l;
 }
 
@@ -180,10 +180,11 @@ static void assert_by_rays(struct lumps *l, uint32_t clump) {
     struct solved s;
     double exact = 0;
     l->half = 2.5;
-    for (int k = 0; k < 6; k++) l->wall_t[k] = k == 4 ? 1300 : 500, l->wall_e[k] = .6;
+    for (uint32_t i = 0; i < l->n; i++) l->t[i] = 400;
+    for (int k = 0; k < 6; k++) l->wall_t[k] = k == 4 ? 1300 : 900, l->wall_e[k] = .6;
     solve(l, &s);
     for (uint32_t i = 0; i < l->n; i++) {
-        const double own = power_by_paths(l, i, 600000);
+        const double own = power_by_paths(l, i, 2000000);
         if (getenv("SHOW")) printf("member %u power %.2f rays %.2f error %.2f\n", i, s.power[i], own, s.error[i]);
         if (l->clump[i] == clump) exact += own;
     }
@@ -196,4 +197,165 @@ static void assert_by_rays(struct lumps *l, uint32_t clump) {
 LOOP_TEST(grey_clumps_in_a_room, 4) {
     struct lumps l = _i / 2 ? four(_i % 2 ? .3 : .8) : dumbbell(.8, _i % 2 ? .3 : .8);
     assert_by_rays(&l, l.clump[0]);
+}
+
+/* ---- one temperature a clump -------------------------------------------------------------------------------------- */
+
+/* A dumbbell and a clump of four beside each other in a room, with members of different emissivities. */
+static struct lumps two_clumps(void) {
+    struct lumps l = dumbbell(.8, .6), other = four(.7);
+    for (int i = 0; i < 4; i++) {
+        for (int k = 0; k < 3; k++) l.at[2 + i][k] = other.at[i][k] - (k == 2 ? .2 : 0);
+        l.at[2 + i][1] += 1.6, l.r[2 + i] = other.r[i] * .8, l.clump[2 + i] = 3, l.e[2 + i] = .3 + .2 * i;
+        for (int k = 0; k < 3; k++) l.at[2 + i][k] *= k == 1 ? 1 : .8;
+    }
+    for (int i = 0; i < 2; i++) l.at[i][1] = -1.2, l.e[i] = .4 + .4 * i;
+    l.n = 6, l.half = 3, l.around = 300;
+    for (int k = 0; k < 6; k++) l.wall_t[k] = 400 + 100 * k, l.wall_e[k] = .7;
+    return l;
+}
+
+static void set_clump(struct lumps *l, uint32_t clump, double t, double power) {
+    for (uint32_t i = 0; i < l->n; i++)
+        if (l->clump[i] == clump) l->t[i] = t, l->power[i] = isnan(t) ? power : NAN, power = 0;
+}
+
+/* If all is at one temperature nothing flows, to the bit. */
+TEST(equal_temperatures) {
+    struct lumps l = two_clumps();
+    struct solved s;
+    l.around = 700;
+    set_clump(&l, 7, 700, 0), set_clump(&l, 3, 700, 0);
+    for (int k = 0; k < 6; k++) l.wall_t[k] = 700;
+    solve(&l, &s);
+    for (uint32_t i = 0; i < l.n; i++) ck_assert_double_eq(s.power[i], 0);
+    for (int k = 0; k < 6; k++) ck_assert_double_eq(s.wall[k], 0);
+}
+
+/* Powers of both clumps at given temperatures. */
+static void radiated(struct lumps l, double t7, double t3, double power[2]) {
+    struct solved s;
+    memset(l.film, 0, sizeof l.film);
+    set_clump(&l, 7, t7, 0), set_clump(&l, 3, t3, 0);
+    solve(&l, &s);
+    power[0] = of_clump(&l, 7, s.power, false), power[1] = of_clump(&l, 3, s.power, false);
+}
+
+/* Two clumps that give off powers, with films and contacts: radiation is linear in T^4, so that powers at three pairs
+ * of temperatures and Newton's method tell both temperatures. */
+TEST(contacts_and_films) {
+    const uint32_t first[] = {0, 4, 1, 0, 2}, second[] = {2, 1, 6 + 4, 1, 5};
+    const double conductance[] = {3, 5, 2, 1e9, 1e9}; /* the last two are within clumps */
+    fibrad_heat_sources more = {
+        .contact_first = first, .contact_second = second, .conductance = conductance, .contacts = 5};
+    struct lumps l = two_clumps();
+    struct solved s;
+    double base[2], by[2][2], t[2] = {700, 700}, film[2] = {0, 0}, warmed[2] = {0, 0};
+    l.config.directions = 60;
+    radiated(l, 600, 600, base), radiated(l, 700, 600, by[0]), radiated(l, 600, 700, by[1]);
+    for (int a = 0; a < 2; a++)
+        for (int b = 0; b < 2; b++) by[a][b] = (by[a][b] - base[b]) / (fourth(700) - fourth(600));
+    set_clump(&l, 7, NAN, 40000), set_clump(&l, 3, NAN, -9000);
+    for (uint32_t i = 0; i < l.n; i++) {
+        l.film[i] = 2 + i, l.gas[i] = 500 + 20 * i;
+        film[l.clump[i] == 3] += l.film[i], warmed[l.clump[i] == 3] += l.film[i] * l.gas[i];
+    }
+    for (int step = 0; step < 60; step++) {
+        double missing[2], slope[2][2];
+        for (int b = 0; b < 2; b++) {
+            const double wall = b == 0 ? 2 : 0;
+            missing[b] = (b == 0 ? 40000 : -9000) + base[b] + warmed[b] - film[b] * t[b] + 8 * (t[1 - b] - t[b]) +
+                         wall * (l.wall_t[4] - t[b]);
+            for (int a = 0; a < 2; a++) {
+                missing[b] += by[a][b] * (fourth(t[a]) - fourth(600));
+                slope[b][a] = 4 * by[a][b] * t[a] * t[a] * t[a] + (a == b ? -film[b] - 8 - wall : 8);
+            }
+        }
+        const double det = slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
+        t[0] -= (missing[0] * slope[1][1] - missing[1] * slope[0][1]) / det;
+        t[1] -= (missing[1] * slope[0][0] - missing[0] * slope[1][0]) / det;
+    }
+    assert_ok(solve_status(&l, &more, &s));
+    if (getenv("SHOW")) printf("T %.9f %.9f own %.9f %.9f errors %.3g %.3g sweeps %u\n", s.t[0], s.t[2], t[0], t[1], s.t_error[0], s.t_error[2], s.result.sweeps);
+    double sum = s.result.surroundings_power + s.result.gas_power, gas = 0;
+    for (uint32_t i = 0; i < l.n; i++) {
+        const double own = t[l.clump[i] == 3];
+        ck_assert_double_eq_tol(s.t[i], own, 1e-3); /* extrapolation to small patches comes before conduction */
+        ck_assert_double_eq(s.t[i], s.t[l.clump[i] == 3 ? 2 : 0]);
+        assert_near(s.convected[i], l.film[i] * (l.gas[i] - s.t[i]), 1e-12);
+        gas += s.convected[i], sum += s.power[i];
+    }
+    assert_near(s.conducted[0], 3 * (s.t[2] - s.t[0]), 1e-9);
+    assert_near(s.conducted[2], 3 * (s.t[0] - s.t[2]), 1e-9);
+    assert_near(-s.result.gas_power, gas, 1e-12);
+    assert_near(of_clump(&l, 7, s.power, false), -40000, 1e-10);
+    assert_near(of_clump(&l, 3, s.power, false), 9000, 1e-10);
+    for (int k = 0; k < 6; k++) sum += s.wall[k];
+    ck_assert_double_le(fabs(sum), 1e-8);
+}
+
+/* Without contacts and films: a clump of unknown temperature finds that of its surroundings. */
+TEST(found_temperatures) {
+    struct lumps l = dumbbell(1, .3);
+    struct solved s;
+    set_clump(&l, 7, NAN, 1000), l.e[1] = 0;
+    solve(&l, &s);
+    ck_assert_double_eq(s.t[0], s.t[1]);
+    ck_assert_double_eq(s.power[1], 0);
+    set_clump(&l, 7, NAN, 0), l.e[1] = .9;
+    solve(&l, &s);
+    ck_assert_double_eq_tol(s.t[0], 300, 1e-9);
+    l = two_clumps();
+    set_clump(&l, 7, NAN, 5000), set_clump(&l, 3, NAN, 0);
+    solve(&l, &s);
+    assert_near(of_clump(&l, 7, s.power, false), -5000, 1e-10);
+    ck_assert_double_le(fabs(of_clump(&l, 3, s.power, false)), 1e-9);
+    for (uint32_t i = 0; i < l.n; i++) ck_assert_double_eq(s.t[i], s.t[l.clump[i] == 3 ? 2 : 0]);
+}
+
+TEST(refused) {
+    struct lumps l = dumbbell(1, .5);
+    struct solved s;
+    l.t[1] = 901;
+    ck_assert_int_eq(solve_status(&l, NULL, &s), FIBRAD_E_ARGUMENT);
+    l.t[1] = NAN, l.power[1] = 0;
+    ck_assert_int_eq(solve_status(&l, NULL, &s), FIBRAD_E_ARGUMENT);
+    l.t[1] = 900, l.power[1] = NAN;
+    const double conductivity[] = {INFINITY, 3};
+    ck_assert_int_eq(solve_status(&l, &(fibrad_heat_sources){.conductivity = conductivity}, &s), FIBRAD_E_ARGUMENT);
+    assert_ok(solve_status(&l, NULL, &s));
+}
+
+/* ---- clumps and all else ------------------------------------------------------------------------------------------ */
+
+/* A clump is the same across a period and within it. */
+TEST(across_a_period) {
+    struct solved s[2];
+    double power[2], error = 0;
+    for (int k = 0; k < 2; k++) {
+        struct lumps l = two_clumps();
+        for (uint32_t i = 0; i < l.n; i++) l.at[i][0] += 2.6 * k, l.at[i][0] -= l.at[i][0] > 3 ? 6 : 0;
+        l.period[0] = 6;
+        set_clump(&l, 3, 1500, 0);
+        for (int w = 0; w < 4; w++) l.wall_t[w] = 600 + 100 * w;
+        solve(&l, &s[k]);
+        power[k] = of_clump(&l, 3, s[k].power, false), error = hypot(error, of_clump(&l, 3, s[k].error, true));
+    }
+    if (getenv("SHOW")) printf("period %.3f %.3f error %.3f\n", power[0], power[1], error);
+    ck_assert_double_le(fabs(power[1] - power[0]), 2 * error);
+}
+
+/* A sphere that lies within a clump has no surface, and changes nothing. */
+TEST(covered) {
+    struct lumps l = dumbbell(1, .5);
+    struct solved s[2];
+    solve(&l, &s[0]);
+    l.n = 3, l.r[2] = .4, l.at[2][0] = .1, l.clump[2] = 7, l.e[2] = .2, l.t[2] = 900, l.power[2] = NAN;
+    solve(&l, &s[1]);
+    ck_assert_double_eq(s[1].power[2], 0);
+    assert_near(of_clump(&l, 7, s[1].power, false), of_clump(&l, 7, s[0].power, false), 2e-3);
+    set_clump(&l, 7, NAN, 100), l.power[2] = 20, l.film[2] = 3, l.gas[2] = 400;
+    solve(&l, &s[1]);
+    assert_near(s[1].power[0] + s[1].power[1] + s[1].power[2], -120, 1e-10);
+    assert_near(s[1].power[2], 3 * (400 - s[1].t[2]), 1e-12);
 }
