@@ -20,9 +20,9 @@
 #include <stdint.h>
 
 typedef enum fibrad_contact_kind {
-    FIBRAD_CONTACT_NONE,  /* the node has no contacts and no film */
-    FIBRAD_CONTACT_GIVEN, /* its temperature is given, or nothing is known of it yet */
-    FIBRAD_CONTACT_FREE,  /* its temperature is to be found */
+    FIBRAD_CONTACT_NONE,   /* the node has no contacts and no film */
+    FIBRAD_CONTACT_GIVEN,  /* its temperature is given, or nothing is known of it yet */
+    FIBRAD_CONTACT_FREE,   /* its temperature is to be found */
     FIBRAD_CONTACT_FOLLOWS /* it is no node of its own, and has the temperature of a node that is free */
 } fibrad_contact_kind;
 

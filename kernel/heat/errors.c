@@ -355,7 +355,8 @@ static double estimated_error(const fibrad_heat *heat, const fibrad_heat_errors 
         sum += weight * pool->errors / pool->exchanges, samples += weight;
     }
     const double sample = exchange > 0 ? own_sample(heat, errors, b) : 0;
-    const double pooled = samples > 0 ? sum / samples * squared(exchange) : sample;
+    const double alone = b < heat->spheres ? sample : 0; /* the powers of all others are given */
+    const double pooled = samples > 0 ? sum / samples * squared(exchange) : alone;
     const double smooth = b < heat->spheres ? spot_error(heat, b) : patch_error(heat, b);
     const double all = exchange > 0 ? squared(smooth) + (sample + pooled) / 2 : 0;
     return is_exact(heat, b) ? fibrad_min(all, exact_error(heat, b)) : all;

@@ -210,8 +210,7 @@ static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
 }
 
 /* The normal where the beam of a point leaves. */
-static void normal_of_beam(const fibrad_disc_points *set, const double frame[9], uint32_t p,
-                           double n[3]) {
+static void normal_of_beam(const fibrad_disc_points *set, const double frame[9], uint32_t p, double n[3]) {
     const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
     for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
 }

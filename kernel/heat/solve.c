@@ -504,8 +504,8 @@ static double radiated_by_joined(const fibrad_heat *heat, uint32_t b) {
     const fibrad_contacts *c = &heat->contacts;
     const double emits = stiffness_of_joined(heat, b) - heat->sources.storage[b];
     if (fibrad_heat_is_member(heat, b))
-        return heat->solution.power[b] + emits * (extrapolated_emission(heat, b) + c->more -
-                                                  fibrad_contact_emission(c, c->temperature[b]));
+        return heat->solution.power[b] +
+               emits * (extrapolated_emission(heat, b) + c->more - fibrad_contact_emission(c, c->temperature[b]));
     return c->supply[b] - c->gain[b] - heat->sources.given_power[b] -
            emits * fibrad_contact_emission(c, c->temperature[b]);
 }

@@ -257,7 +257,8 @@ static int sphere_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uin
     if (!fibrad_heat_is_member(heat, b)) return FIBRAD_WHY_UNSAID;
     if (fibrad_finite(conductivity)) return FIBRAD_WHY_CLUMP_SOLID;
     const double leader = s->temperature[heat->order[heat->clumps.leader[b]]], own = source.temperature;
-    return is_given(own) != is_given(leader) || (is_given(own) && own != leader) ? FIBRAD_WHY_CLUMP_HEAT : FIBRAD_WHY_UNSAID;
+    return is_given(own) != is_given(leader) || (is_given(own) && own != leader) ? FIBRAD_WHY_CLUMP_HEAT
+                                                                                 : FIBRAD_WHY_UNSAID;
 }
 
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
@@ -381,8 +382,8 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
                      const radiator *source) {
     const bool dark = source->emissivity == 0, touching = in_contact(heat, b);
     const bool follows = fibrad_heat_follows(heat, b);
-    const double emission = follows ? heat->sources.emission[heat->clumps.leader[b]]
-                                    : first_emission(heat, s, middle, b, source);
+    const double emission =
+        follows ? heat->sources.emission[heat->clumps.leader[b]] : first_emission(heat, s, middle, b, source);
     if (dark && touching) heat->sources.emission[b] = middle; /* its radiosities do not follow its own emission */
     set_emission(heat, b, source->emissivity, dark ? middle : emission);
     heat->sources.emission[b] = emission;

@@ -1,8 +1,8 @@
 /* clump_caps.c - spheres that are one body: their leaders, and what of them lies inside one another.
  * SPDX-License-Identifier: MIT
  *
- * Members of a clump hide parts of each other. The part of a sphere inside another one is a cap. Whatever leaves or meets
- * a cap is no radiation. Lines that meet a clump meet it first outside of all caps. */
+ * Members of a clump hide parts of each other. The part of a sphere inside another one is a cap. Whatever leaves or
+ * meets a cap is no radiation. Lines that meet a clump meet it first outside of all caps. */
 #include "patches/clump_caps.h"
 #include "base/sort.h"
 #include "base/vector.h"

@@ -105,7 +105,6 @@ static uint64_t points_behind(const fibrad_workspace *work, const double frame[9
 static uint64_t points_inside(const fibrad_heat *heat, const double frame[9], const float *x, const float *y,
                               uint64_t points, uint32_t place, const double disc[3], double side) {
     uint64_t inside = 0;
-    if (!heat->clumps.some) return 0;
     for (size_t k = heat->clumps.first_cap[place]; k < heat->clumps.first_cap[place + 1]; k++) {
         const fibrad_heat_cap *cap = &heat->clumps.cap[k];
         const double a = fibrad_dot(cap->at, frame), b = fibrad_dot(cap->at, frame + 3),
@@ -150,12 +149,15 @@ static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, cons
         const double disc[] = {work->disc.u[k], work->disc.v[k], r};
         const uint64_t behind =
             (hidden & p->behind) | points_behind(work, frame, x, y, hidden, fibrad_work_sphere(work, k), disc, -1);
+        uint64_t lost = behind;
+        if (heat->clumps.some) {
+            const uint64_t wrong =
+                points_inside(heat, frame, x, y, hidden & ~(behind | p->inside), fibrad_work_sphere(work, k), disc, -1);
+            p->wrong |= wrong, lost |= wrong | (hidden & p->inside);
+        }
+        if (lost != 0) take_from_disc(work, k, window, lost);
         points->seen[word] |= behind;
-        const uint64_t inside = hidden & p->inside, open = hidden & ~(behind | inside);
-        const uint64_t wrong = points_inside(heat, frame, x, y, open, fibrad_work_sphere(work, k), disc, -1);
-        p->wrong |= wrong;
-        take_from_disc(work, k, window, behind | inside | wrong);
-        hidden = open & ~wrong;
+        hidden &= ~lost;
         uint64_t bits = heat->division.root[fibrad_work_sphere(work, k)] == FIBRAD_NONE ? hidden & kept : hidden;
         if (bits == 0 && work->near.entry[work->disc.near[k]] >= known) bits = hidden & (0 - hidden);
         for (; bits != 0; bits &= bits - 1)
@@ -240,7 +242,7 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *wo
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
     const float *x = points->set.x + HIT_POINTS * word, *y = points->set.y + HIT_POINTS * word;
     window->behind = points_behind(work, frame, x, y, UINT64_MAX, work->place, disc, 1);
-    window->inside = points_inside(heat, frame, x, y, UINT64_MAX, work->place, disc, 1);
+    window->inside = heat->clumps.some ? points_inside(heat, frame, x, y, UINT64_MAX, work->place, disc, 1) : 0;
     window->wrong = 0;
     find_hit_discs(heat, work, frame, points, k, word, kept, known, window);
     find_hit_normals(work, x, y, window);
@@ -252,7 +254,8 @@ static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *wo
         uint32_t fine = FIBRAD_NONE;
         if (heat->division.root[sphere] != FIBRAD_NONE)
             fine = fibrad_heat_fine_number(
-                heat, sphere, fibrad_heat_patch_on_face(heat, sphere, patch[p], (double[]){window->x[p], window->y[p]}));
+                heat, sphere,
+                fibrad_heat_patch_on_face(heat, sphere, patch[p], (double[]){window->x[p], window->y[p]}));
         if (left_out || fine != FIBRAD_NONE) fibrad_entries_add(&work->entries, entry, k, -1);
         if (left_out) continue;
         *beam++ = fine != FIBRAD_NONE ? fine_beam(heat, work, k, (uint16_t)from, fine)
