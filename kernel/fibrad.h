@@ -464,7 +464,7 @@ typedef struct fibrad_row {
     uint32_t directions; /* out: number of directions of a row along directions, else 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
-    uint32_t lines;      /* out: number of lines of a row along lines, else 0 */
+    uint32_t lines;      /* out: number of lines of a row along lines, else 0; with clumps also of directions */
     float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
                             lines; infinity: the factor is exact, since nothing can come between both spheres. May be
                             NULL. Rows in a collection keep it. */
@@ -633,6 +633,8 @@ typedef struct fibrad_matrix_rule {
     uint32_t tasks;                  /* into how many tasks `parallel` divides, 1 to 1024; changes no bit; 0: 1 */
     const fibrad_wall_row *wall_row; /* [walls], copied; rows of endless walls are not read; NULL: no rows of walls */
     const double *wall_emissivity;   /* [walls], 0 to 1, read if wall_row is set; NULL: 1 */
+    uint32_t bodies;                 /* number of bodies, if rows and columns are bodies, such as clumps; 0: spheres */
+    const double *area;              /* L^2, [bodies], of their surfaces, above 0 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
 } fibrad_matrix_rule;
@@ -671,7 +673,8 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
 
 /* Begins a matrix from all rows of a scene. Each sphere has one row, in any of the collections.
  *   Input    memory[size]
- *            rows[count]: collections; must not change until fibrad_matrix_close has returned
+ *            rows[count]: collections; must not change until fibrad_matrix_close has returned; rows of bodies are
+ *            those of fibrad_rows_add
  *            rule: NULL for all defaults
  *   Output   matrix: a pointer into memory
  *            sphere: the sphere whose row is missing or repeated; may be NULL

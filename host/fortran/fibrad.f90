@@ -161,7 +161,7 @@ module fibrad
     type, bind(C) :: fibrad_bed_matrix
         type(fibrad_factors) :: matrix
         type(fibrad_scene_facts) :: facts
-        type(c_ptr) :: wall_area = c_null_ptr
+        type(c_ptr) :: body = c_null_ptr, area = c_null_ptr, wall_area = c_null_ptr
         integer(c_int) :: threads = 0
         integer(c_int32_t) :: directions = 0
         integer(c_int64_t) :: fallbacks = 0, rays = 0

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "simple/bodies.h"
 #include "simple/contact_list.h"
 
 int fibrad_bed_begin(fibrad_bed *bed) {
@@ -112,11 +113,13 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     bed->config = given->config, bed->spheres = given->spheres;
     bed->traced = false;
     fibrad_scene_describe(scene, &bed->facts);
+    free(bed->bodies);
+    bed->bodies = NULL;
     fibrad_stepping_move(bed);
     memset(bed->warning, 0, sizeof bed->warning);
     free(bed->contacts);
     bed->contacts = NULL;
-    return FIBRAD_OK;
+    return bed->facts.clumps > 0 ? fibrad_bodies_find(bed, &bed->bodies) : FIBRAD_OK;
 }
 
 int fibrad_bed_new(fibrad_bed **out, const fibrad_scene_config *config, const fibrad_spheres *spheres,
@@ -155,6 +158,7 @@ void fibrad_bed_free(fibrad_bed *bed) {
     free(bed->heat_block);
     free(bed->scene_block);
     free(bed->given);
+    free(bed->bodies);
     free(bed->light);
     free(bed->places);
     free(bed);

@@ -109,9 +109,9 @@ class Factors(Structure):
 
 
 class BedMatrix(Structure):
-    _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("wall_area", POINTER(c_double)), ("threads", c_int),
-                ("directions", c_uint32), ("fallbacks", c_uint64), ("rays", c_uint64), ("seconds", c_double),
-                ("closure_error", c_double), ("reciprocity_error", c_double)]
+    _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("body", POINTER(c_uint32)), ("area", POINTER(c_double)),
+                ("wall_area", POINTER(c_double)), ("threads", c_int), ("directions", c_uint32), ("fallbacks", c_uint64),
+                ("rays", c_uint64), ("seconds", c_double), ("closure_error", c_double), ("reciprocity_error", c_double)]
 
 
 class WallRule(Structure):

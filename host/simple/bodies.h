@@ -1,0 +1,22 @@
+/* bodies.h - clumps, and spheres that are alone, as bodies with one row each. SPDX-License-Identifier: MIT */
+#ifndef FIBRAD_SIMPLE_BODIES_H
+#define FIBRAD_SIMPLE_BODIES_H
+
+#include "simple/rows.h"
+
+/* The bodies of a bed, in the order of their first spheres. */
+typedef struct fibrad_bodies {
+    uint32_t n;
+    uint32_t *body; /* [spheres], the body of each */
+    uint32_t *start,
+        *member;  /* [n + 1], [spheres]: spheres of body b are member[start[b]] to member[start[b + 1] - 1] */
+    double *area; /* L^2, [n], exposed */
+} fibrad_bodies;
+
+/* Finds the bodies of a bed with clumps. Free them with free(). Errors: _MEMORY. */
+int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **bodies);
+
+/* Makes the rows of bodies from the rows of their spheres that the team has collected. These go. Errors: _MEMORY. */
+int fibrad_bodies_merge(fibrad_bed *bed);
+
+#endif
