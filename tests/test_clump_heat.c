@@ -359,3 +359,58 @@ TEST(covered) {
     assert_near(s[1].power[0] + s[1].power[1] + s[1].power[2], -120, 1e-10);
     assert_near(s[1].power[2], 3 * (400 - s[1].t[2]), 1e-12);
 }
+
+/* A black clump cools to cold surroundings: T^-3 grows evenly. A clump beside another one with a film: own steps. */
+TEST(cooling) {
+    struct lumps l = dumbbell(1, 1);
+    OWNED_MADE *made = NULL;
+    const fibrad_spheres spheres = spheres_of_lumps(&l);
+    fibrad_heat_sources sources;
+    double t[2] = {900, 900}, powers[2], area[2], volume[2], power = 0;
+    const double capacity[2] = {4e6, 1e6};
+    fibrad_span span = {.temperature = t, .capacity = capacity, .duration = 2000, .tolerance = 1e-6, .power = powers};
+    assert_ok(made_with(&made, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_surfaces(made, area, volume));
+    assert_near(area[0] + area[1], 6 * PI, 1e-12);
+    assert_near(volume[0] + volume[1], 9. / 4 * PI, 1e-12);
+    l.around = 0;
+    sources = sources_of_lumps(&l);
+    sources.film = sources.gas = NULL, sources.power = NULL;
+    struct solved s = {.result = {.power = s.power, .temperature = s.t}};
+    assert_ok(fibrad_bed_solve(made, &(fibrad_heat_sources){.temperature = l.t, .emissivity = l.e, .sigma = SIGMA}, NULL,
+                               &s.result));
+    for (int i = 0; i < 2; i++) power -= s.power[i];
+    assert_ok(fibrad_bed_advance(made, &sources, &span));
+    const double exact = pow(pow(900, -3) + 3 * power / fourth(900) * 2000 / 5e6, -1. / 3);
+    if (getenv("SHOW")) printf("cooled %.6f exact %.6f steps %d\n", t[0], exact, (int)span.steps);
+    ck_assert_double_eq(t[0], t[1]);
+    ck_assert_double_eq_tol(t[0], exact, 2e-3);
+    assert_near(span.surroundings_energy, 5e6 * (900 - t[0]), 1e-10);
+    t[1] += 1;
+    ck_assert_int_eq(fibrad_bed_advance(made, &sources, &span), FIBRAD_E_ARGUMENT);
+}
+
+/* The volume of a clump: a lens counted once; points. */
+TEST(volumes) {
+    struct lumps l = four(1);
+    OWNED_MADE *made = NULL;
+    const fibrad_spheres spheres = spheres_of_lumps(&l);
+    fibrad_random random = fibrad_random_start(3, 4);
+    double volume[4], inside = 0;
+    const double points = 1e6;
+    assert_ok(fibrad_bed_new(&made, NULL, &spheres, NULL));
+    assert_ok(fibrad_bed_surfaces(made, NULL, volume));
+    for (double k = 0; k < points; k++) {
+        bool in = false;
+        double p[3];
+        for (int a = 0; a < 3; a++) p[a] = 3 * fibrad_random_next(&random) - 1.5;
+        for (int i = 0; i < 4; i++) {
+            double square = 0;
+            for (int a = 0; a < 3; a++) square += (p[a] - l.at[i][a]) * (p[a] - l.at[i][a]);
+            in = in || square < l.r[i] * l.r[i];
+        }
+        inside += in;
+    }
+    const double part = inside / points, error = 27 * sqrt(part * (1 - part) / points);
+    ck_assert_double_eq_tol(volume[0] + volume[1] + volume[2] + volume[3], 27 * part, 3 * error);
+}

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "simple/bed.h"
+#include "simple/bodies.h"
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
 #define TOLERANCE 1e-4
@@ -64,8 +65,17 @@ static void set_surfaces(struct stepper *m) {
     if (law) law->follow(law->context, t->guess, t->wall_stage, t->emissivity, t->wall_emissivity);
 }
 
+/* The spheres of body b: the members of a clump, or one. */
+static const uint32_t *members_of(const struct stepper *m, const uint32_t *b, uint32_t *count) {
+    const fibrad_bodies *bodies = m->bed->bodies;
+    *count = bodies ? bodies->start[*b + 1] - bodies->start[*b] : 1;
+    return bodies ? bodies->member + bodies->start[*b] : b;
+}
+
 /* Whether a sphere exchanges no heat with any other. */
 static bool stands_alone(const struct stepper *m, uint32_t i) {
+    const fibrad_bodies *bodies = m->bed->bodies;
+    if (bodies && bodies->start[bodies->body[i] + 1] - bodies->start[bodies->body[i]] > 1) return false;
     return m->sources.emissivity[i] == 0 && m->t->conducts[i] == 0;
 }
 
@@ -115,15 +125,25 @@ static bool accept_solution(struct stepper *m, double length) {
 static void balance_energy(struct stepper *m, double length) {
     fibrad_stepping *t = m->t;
     double left = -m->result.surroundings_power - m->result.gas_power, capacity = 0;
+    const uint32_t bodies = m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b) left -= m->result.wall_power[b];
-    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double rate = m->span->capacity[i] / length, at = t->solution[i];
-        const double stiff =
-            4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
-        const double missing = power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
-        t->solution[i] += missing / (rate + stiff);
-        left += power_of(m, i) - rate * (t->solution[i] - t->base[i]);
-        capacity += m->span->capacity[i];
+    for (uint32_t b = 0; b < bodies; ++b) {
+        double missing = 0, stiff = 0;
+        uint32_t count;
+        const uint32_t *member = members_of(m, &b, &count);
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t i = member[k];
+            const double rate = m->span->capacity[i] / length, at = t->solution[i];
+            missing += power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
+            stiff += rate +
+                     (4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i]);
+        }
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t i = member[k];
+            t->solution[i] += missing / stiff;
+            left += power_of(m, i) - m->span->capacity[i] / length * (t->solution[i] - t->base[i]);
+            capacity += m->span->capacity[i];
+        }
     }
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) t->solution[i] += left * length / capacity;
 }
@@ -261,6 +281,11 @@ static int take_steps(struct stepper *m) {
     return FIBRAD_OK;
 }
 
+/* The first member of the clump of a sphere. */
+static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
+    return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
+}
+
 /* Checks a span. bed->fault: the first sphere with an invalid value. */
 static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
     const uint32_t n = bed->facts.spheres, walls = bed->facts.walls;
@@ -276,6 +301,7 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
                         : !(span->capacity[i] > 0 && span->capacity[i] <= FIBRAD_CAPACITY_MAX) ? FIBRAD_WHY_CAPACITY
                         : s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX)                 ? FIBRAD_WHY_POWER
                         : !(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)                    ? FIBRAD_WHY_EMISSIVITY
+                        : span->temperature[first_member(bed, i)] != span->temperature[i]      ? FIBRAD_WHY_CLUMP_HEAT
                                                                                                : 0;
         if (why) bed->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
         if (why) return FIBRAD_E_ARGUMENT;
@@ -287,9 +313,9 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
- * contacts and no films, and the temperatures of walls and surroundings are known. */
+ * contacts, no films and no clumps, and the temperatures of walls and surroundings are known. */
 static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
-    bool suffice = !span->law && !s->conductivity && s->contacts == 0 && !s->film && !s->wall_film;
+    bool suffice = !span->law && !s->conductivity && s->contacts == 0 && !s->film && !s->wall_film && !bed->bodies;
     suffice = suffice && s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
     for (uint32_t b = 0; b < bed->facts.walls; ++b)
         suffice = suffice && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
