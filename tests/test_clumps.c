@@ -184,8 +184,10 @@ static double free_angle(double z, void *slices) {
 /* The exposed area of a member by adaptive quadrature. Between the ends of the circles the integrand is smooth but for
  * bends. */
 static double by_slices(const struct bodies *b, uint32_t i) {
-    double end[2 * MOST] = {-1, 1}, sum = 0, error;
-    uint32_t n = 2;
+    enum { PIECES = 50 }; /* so that no bend is overlooked */
+    double end[2 * MOST + PIECES + 1], sum = 0, error;
+    uint32_t n = 0;
+    for (; n <= PIECES; ++n) end[n] = -1 + 2. * n / PIECES;
     for (uint32_t j = 0; j < b->members; ++j) {
         double c[3], square = 0;
         for (int k = 0; k < 3; ++k) c[k] = (b->at[j][k] - b->at[i][k]) / b->r[i], square += c[k] * c[k];
