@@ -109,7 +109,7 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     m->exchange = rule.kind == FIBRAD_ROWS_EXCHANGE;
     m->sampled = rule.kind != FIBRAD_ROWS_AREAS;
     m->lines = lines && !m->raw && !m->sampled;
-    m->enclosed = rule.wall_row != NULL;
+    m->enclosed = rule.wall_row != NULL, m->bodies = rule.bodies > 0;
     m->drop = rule.drop, m->parallel = rule.parallel, m->context = rule.context;
     m->result.n = rows_of(scene, &rule);
     m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
@@ -368,6 +368,7 @@ static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
     double met = 0, own;
     const double distance = distance_to_raw(m, i, &own);
     for (uint32_t b = 0; b < m->walls; b++) met += m->wall[(size_t)i * m->walls + b];
+    if (m->bodies) own = 1; /* most of the error is of what passes inside, which no mean makes smaller */
     if (!m->exchange) return fibrad_max(VIEW_ERROR * distance, (own + (1 - own) * met) * m->error[i]);
     /* of paths: the square of the error is in proportion to what they find, and no mean changes walls and the open */
     const double ends = fibrad_min(1, met + m->escaped[i] + m->beyond[i]), raw = m->error[i] * m->error[i];
