@@ -109,7 +109,7 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *            where this light would end if there were neither spheres nor triangles. They add up to `spheres`.
  *            apart[spheres]: light of even directions of a cone minus that of odd ones, for the spheres of the task
  *            alone; may be NULL
- *   Errors   as fibrad_light_empty; _STATE: the scene has changed
+ *   Errors   as fibrad_light_empty; _STATE: the scene has changed; _UNSUPPORTED: the scene has clumps
  *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept, double *apart);

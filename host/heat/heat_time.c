@@ -162,7 +162,8 @@ static int find_capacities(struct time_run *m, double **capacity) {
                            "the temperature is %g K; the initial temperature must be above 0", m->span.temperature[i]);
         const double r = h->bed->r[i] * h->bed->metres, store = (*capacity)[i] * density[i];
         if (h->conductivity) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * h->conductivity[i]));
-        (*capacity)[i] = store * (4. / 3 * M_PI) * gsl_pow_3(r);
+        (*capacity)[i] = h->clumps.area ? store * heat_volume(h, i) * gsl_pow_3(h->bed->metres)
+                                        : store * (4. / 3 * M_PI) * gsl_pow_3(r);
     }
     free(density);
     return status;

@@ -10,6 +10,12 @@ const char *contents_wall(const struct contents *what, uint32_t k, char name[WAL
     return name;
 }
 
+struct contents contents_table(const struct contents *what) {
+    struct contents table = *what;
+    if (what->bodies) table.bed = what->bodies, table.result = what->of_bodies, table.area = what->area_of_bodies;
+    return table;
+}
+
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]) {
     const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
@@ -28,14 +34,15 @@ void heat_columns(const struct contents *what, struct heat_column column[HEAT_CO
         {"absorbed_W", light ? light->absorbed : NULL, NULL, NULL},
         {"q_radiation_W", parts, r->conducted, r->convected},
         {"q_conduction_W", r->conducted, NULL, NULL},
-        {"q_convection_W", r->convected, NULL, NULL}};
+        {"q_convection_W", r->convected, NULL, NULL},
+        {"area_m2", what->area, NULL, NULL}};
     memcpy(column, all, sizeof all);
 }
 
 const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_NAME], double value[HEAT_COLUMNS]) {
     const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
-    for (int c = 0; c < HEAT_COLUMNS; ++c) value[c] = c >= HEAT_INSIDE && c < HEAT_LIGHT ? NAN : 0;
+    for (int c = 0; c < HEAT_COLUMNS; ++c) value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c == HEAT_AREA ? NAN : 0;
     if (k == what->walls->count) {
         value[HEAT_TEMPERATURE] = value[HEAT_TEMPERATURE_ERROR] = NAN;
         value[HEAT_POWER] = value[HEAT_PARTS + 2] = r->gas_power, value[HEAT_POWER_ERROR] = r->gas_error;
@@ -48,6 +55,7 @@ const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_N
             value[HEAT_LIGHT] = light->transmitted, value[HEAT_LIGHT + 1] = light->transmitted + light->reflected;
         return isnan(value[HEAT_TEMPERATURE]) ? NULL : "surroundings";
     }
+    value[HEAT_AREA] = r->wall_area[k];
     value[HEAT_TEMPERATURE] = r->wall_temperature[k], value[HEAT_TEMPERATURE_ERROR] = r->wall_temperature_error[k];
     value[HEAT_POWER] = r->wall_power[k], value[HEAT_POWER_ERROR] = r->wall_error[k];
     if (light) value[HEAT_LIGHT] = light->wall_absorbed_first[k], value[HEAT_LIGHT + 1] = light->wall_absorbed[k];

@@ -221,7 +221,7 @@ static double find_residual(fibrad_heat *heat) {
                  : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
                  : fibrad_heat_is_free(heat, b)  ? free_residual(heat, b)
                                                  : given_residual(heat, b);
-    return slope;
+    return fibrad_max(0, slope); /* of joined bodies it may be below 0 by rounding */
 }
 
 /* Finds the emissions of the bodies of unknown temperature. */
