@@ -426,14 +426,14 @@ TEST(members_in_any_order) {
 #define CLUMPS "tests/data/clumps2000.dump"
 
 /* A matrix in a .csv: entries by the names of rows and columns, both from 1. Those below 0 are not read. */
-static void read_entries(const char *path, uint32_t n, double *f, double *sum) {
-    const char *at = strchr(read_file(path), '\n') + 1;
-    for (int i, j; *at; at = strchr(at, '\n') + 1) {
-        double value;
-        ck_assert_int_eq(sscanf(at, "%d,%d,%lf", &i, &j, &value), 3);
+static void read_entries(const char *path, long n, double *f, double *sum) {
+    char *at = strchr(read_file(path), '\n') + 1;
+    for (; *at; at = strchr(at, '\n') + 1) {
+        const long i = strtol(at, &at, 10), j = strtol(at + 1, &at, 10);
+        const double value = strtod(at + 1, &at);
         if (i < 0) continue;
         sum[i - 1] += value;
-        if (j > 0) f[(uint32_t)(i - 1) * n + (uint32_t)(j - 1)] = value;
+        if (j > 0) f[(i - 1) * n + j - 1] = value;
     }
 }
 
