@@ -2,8 +2,11 @@
  * own Newton solution. SPDX-License-Identifier: MIT */
 #include "base/random.h"
 #include "host_owned.h"
+#include "meshes.h"
+#include "program.h"
 #include "scenes.h"
-#include "suite.h"
+
+FIXTURE(make_folder, remove_folder)
 
 #define PI    3.14159265358979323846
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
@@ -58,9 +61,13 @@ static int solve_status(struct lumps *l, const fibrad_heat_sources *more, struct
         sources.contact_first = more->contact_first, sources.contact_second = more->contact_second;
         sources.conductivity = more->conductivity;
     }
-    *to = (struct solved){.result = {.power = to->power, .power_error = to->error, .temperature = to->t,
-                                     .temperature_error = to->t_error, .wall_power = to->wall,
-                                     .wall_error = to->wall_error, .conducted = to->conducted,
+    *to = (struct solved){.result = {.power = to->power,
+                                     .power_error = to->error,
+                                     .temperature = to->t,
+                                     .temperature_error = to->t_error,
+                                     .wall_power = to->wall,
+                                     .wall_error = to->wall_error,
+                                     .conducted = to->conducted,
                                      .convected = to->convected}};
     assert_ok(made_with(&made, &config, &spheres, &l->config, NULL));
     return fibrad_bed_solve(made, &sources, NULL, &to->result);
@@ -105,13 +112,13 @@ TEST(black_dumbbells) {
         solve(&l, &s);
         const double exact = 2 * PI * (2 + d[k]) * (1 - self[k]) * SIGMA * (fourth(300) - fourth(900));
         const double power = of_clump(&l, 7, s.power, false), error = of_clump(&l, 7, s.error, true);
-        if (getenv("SHOW")) printf("d %.1f %.6f %.6f rel %.2e est %.2e sweeps %u\n", d[k], power, exact, power / exact - 1, error / fabs(exact), s.result.sweeps);
         ck_assert_double_lt(fabs(power / exact - 1), 2e-3);
         ck_assert_double_lt(fabs(power - exact), 2 * error);
     }
 }
 
-/* ---- own rays on the union ---------------------------------------------------------------------------------------- */
+/* ---- own rays on the union ----------------------------------------------------------------------------------------
+ */
 
 /* The first surface that a ray meets: sphere j, or n + a plane; UINT32_MAX: none. */
 static uint32_t first_met(const struct lumps *l, uint32_t from, double o[3], const double w[3], double n[3]) {
@@ -185,11 +192,9 @@ static void assert_by_rays(struct lumps *l, uint32_t clump) {
     solve(l, &s);
     for (uint32_t i = 0; i < l->n; i++) {
         const double own = power_by_paths(l, i, 2000000);
-        if (getenv("SHOW")) printf("member %u power %.2f rays %.2f error %.2f\n", i, s.power[i], own, s.error[i]);
         if (l->clump[i] == clump) exact += own;
     }
     const double power = of_clump(l, clump, s.power, false), error = of_clump(l, clump, s.error, true);
-    if (getenv("SHOW")) printf("power %.2f rays %.2f rel %.2e est %.2e\n", power, exact, power / exact - 1, error / fabs(exact));
     ck_assert_double_lt(fabs(power / exact - 1), 5e-3);
     ck_assert_double_lt(fabs(power - exact), 2 * error + 2e-3 * fabs(exact));
 }
@@ -199,7 +204,8 @@ LOOP_TEST(grey_clumps_in_a_room, 4) {
     assert_by_rays(&l, l.clump[0]);
 }
 
-/* ---- one temperature a clump -------------------------------------------------------------------------------------- */
+/* ---- one temperature a clump --------------------------------------------------------------------------------------
+ */
 
 /* A dumbbell and a clump of four beside each other in a room, with members of different emissivities. */
 static struct lumps two_clumps(void) {
@@ -276,7 +282,6 @@ TEST(contacts_and_films) {
         t[1] -= (missing[1] * slope[0][0] - missing[0] * slope[1][0]) / det;
     }
     assert_ok(solve_status(&l, &more, &s));
-    if (getenv("SHOW")) printf("T %.9f %.9f own %.9f %.9f errors %.3g %.3g sweeps %u\n", s.t[0], s.t[2], t[0], t[1], s.t_error[0], s.t_error[2], s.result.sweeps);
     double sum = s.result.surroundings_power + s.result.gas_power, gas = 0;
     for (uint32_t i = 0; i < l.n; i++) {
         const double own = t[l.clump[i] == 3];
@@ -326,7 +331,8 @@ TEST(refused) {
     assert_ok(solve_status(&l, NULL, &s));
 }
 
-/* ---- clumps and all else ------------------------------------------------------------------------------------------ */
+/* ---- clumps and all else ------------------------------------------------------------------------------------------
+ */
 
 /* A clump is the same across a period and within it. */
 TEST(across_a_period) {
@@ -341,8 +347,75 @@ TEST(across_a_period) {
         solve(&l, &s[k]);
         power[k] = of_clump(&l, 3, s[k].power, false), error = hypot(error, of_clump(&l, 3, s[k].error, true));
     }
-    if (getenv("SHOW")) printf("period %.3f %.3f error %.3f\n", power[0], power[1], error);
     ck_assert_double_le(fabs(power[1] - power[0]), 2 * error);
+}
+
+/* Walls of triangles and planes at the same places. */
+TEST(beside_meshes) {
+    struct lumps l = two_clumps();
+    struct solved s, of_mesh;
+    OWNED struct mesh *mesh = mesh_new();
+    const double low[3] = {-3, -3, -3}, high[3] = {3, 3, 3};
+    OWNED_MADE *made = NULL;
+    set_clump(&l, 7, 1200, 0), set_clump(&l, 3, 500, 0);
+    solve(&l, &s);
+    mesh_box(mesh, low, high, 0);
+    const fibrad_scene_config config = {.wall = mesh->wall, .walls = 6, .triangles = &mesh->triangles};
+    const fibrad_spheres spheres = spheres_of_lumps(&l);
+    fibrad_heat_sources sources = sources_of_lumps(&l);
+    sources.film = sources.gas = sources.power = NULL;
+    of_mesh =
+        (struct solved){.result = {.power = of_mesh.power, .power_error = of_mesh.error, .wall_power = of_mesh.wall}};
+    assert_ok(made_with(&made, &config, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_solve(made, &sources, NULL, &of_mesh.result));
+    double sum = 0, all = 0;
+    for (uint32_t clump = 3; clump <= 7; clump += 4) {
+        const double change = of_clump(&l, clump, s.power, false) - of_clump(&l, clump, of_mesh.power, false);
+        const double error = hypot(of_clump(&l, clump, s.error, true), of_clump(&l, clump, of_mesh.error, true));
+        ck_assert_double_le(fabs(change), 2 * error);
+    }
+    for (uint32_t i = 0; i < l.n; i++) sum += of_mesh.power[i], all += fabs(of_mesh.power[i]);
+    for (int k = 0; k < 6; k++) sum += of_mesh.wall[k], all += fabs(of_mesh.wall[k]);
+    ck_assert_double_le(fabs(sum), 1e-12 * all);
+}
+
+/* A small sphere beside a clump, whose patches are divided there. */
+TEST(small_beside_large) {
+    struct lumps l = four(.4);
+    struct solved s;
+    for (int i = 0; i < 4; i++) l.t[i] = 1300;
+    l.at[4][0] = -1.12, l.r[4] = .1, l.e[4] = .3, l.t[4] = 400, l.power[4] = NAN, l.n = 5, l.around = 300;
+    solve(&l, &s);
+    double exact = 0;
+    for (uint32_t i = 0; i < 4; i++) exact += power_by_paths(&l, i, 400000);
+    const double small = power_by_paths(&l, 4, 400000);
+    ck_assert_double_le(fabs(s.power[4] - small), 2 * s.error[4] + 3e-3 * small);
+    ck_assert_double_le(fabs(of_clump(&l, 3, s.power, false) - exact),
+                        2 * of_clump(&l, 3, s.error, true) + 2e-3 * fabs(exact));
+}
+
+/* A sphere that conducts touches a clump. */
+TEST(beside_a_conductor) {
+    struct lumps l = dumbbell(.8, .6);
+    struct solved s;
+    const uint32_t first = 2, second = 1;
+    const double conductance = 300, conductivity[] = {INFINITY, INFINITY, 5000};
+    l.at[2][0] = 2.4, l.r[2] = 1, l.e[2] = .6, l.t[2] = NAN, l.power[2] = 0, l.n = 3;
+    l.film[0] = 10, l.gas[0] = 400;
+    set_clump(&l, 7, NAN, 60000);
+    assert_ok(solve_status(&l,
+                           &(fibrad_heat_sources){.contact_first = &first,
+                                                  .contact_second = &second,
+                                                  .conductance = &conductance,
+                                                  .contacts = 1,
+                                                  .conductivity = conductivity},
+                           &s));
+    const double sum = s.power[0] + s.power[1] + s.power[2] + s.result.surroundings_power + s.result.gas_power;
+    ck_assert_double_le(fabs(sum), 1e-12 * 60000);
+    assert_near(of_clump(&l, 7, s.power, false), -60000, 1e-10);
+    ck_assert_double_le(fabs(s.power[2]), 1e-8);
+    ck_assert(s.conducted[2] > 0 && s.t[2] < s.t[0] && s.t[2] > 300);
+    assert_near(s.conducted[2], -s.conducted[1], 1e-9);
 }
 
 /* A sphere that lies within a clump has no surface, and changes nothing. */
@@ -377,12 +450,11 @@ TEST(cooling) {
     sources = sources_of_lumps(&l);
     sources.film = sources.gas = NULL, sources.power = NULL;
     struct solved s = {.result = {.power = s.power, .temperature = s.t}};
-    assert_ok(fibrad_bed_solve(made, &(fibrad_heat_sources){.temperature = l.t, .emissivity = l.e, .sigma = SIGMA}, NULL,
-                               &s.result));
+    assert_ok(fibrad_bed_solve(made, &(fibrad_heat_sources){.temperature = l.t, .emissivity = l.e, .sigma = SIGMA},
+                               NULL, &s.result));
     for (int i = 0; i < 2; i++) power -= s.power[i];
     assert_ok(fibrad_bed_advance(made, &sources, &span));
     const double exact = pow(pow(900, -3) + 3 * power / fourth(900) * 2000 / 5e6, -1. / 3);
-    if (getenv("SHOW")) printf("cooled %.6f exact %.6f steps %d\n", t[0], exact, (int)span.steps);
     ck_assert_double_eq(t[0], t[1]);
     ck_assert_double_eq_tol(t[0], exact, 2e-3);
     assert_near(span.surroundings_energy, 5e6 * (900 - t[0]), 1e-10);
@@ -413,4 +485,64 @@ TEST(volumes) {
     }
     const double part = inside / points, error = 27 * sqrt(part * (1 - part) / points);
     ck_assert_double_eq_tol(volume[0] + volume[1] + volume[2] + volume[3], 27 * part, 3 * error);
+}
+
+/* ---- the program --------------------------------------------------------------------------------------------------
+ */
+
+/* Number k of line i of a .csv, both from 0. */
+static double column(const char *file, int i, int k) {
+    char *at = read_file(file);
+    for (int line = 0; line <= i; ++line) ck_assert_ptr_nonnull(at = strchr(at, '\n') + 1);
+    for (int c = 0; c < k; ++c) ck_assert_ptr_nonnull(at = strchr(at, ',') + 1);
+    return strtod(at, NULL);
+}
+
+#define DUMBBELL                                                                                                       \
+    "heat", write_file("bed.csv", "x,y,z,r,body,T\n-0.5,0,0,1,12,900\n0.5,0,0,1,12,900\n0,3,0,1,0,700\n"),             \
+        "--length-unit", "m", "--clump", "body", "--ambient", "300"
+
+TEST(a_line_a_clump) {
+    const char *q = in_folder("q.csv"), *members = in_folder("members.csv"), *vtp = in_folder("q.vtp");
+    SUCCEED(DUMBBELL, "--emissivity", "0.8", "--temperature", "T", "-o", q, "-o", vtp);
+    assert_begins(read_file(q), "i,T_K,q_W,q_error_W,T_error_K,area_m2,body\n12,900,");
+    assert_near(column(q, 0, 5), 6 * PI, 1e-12);
+    assert_near(column(q, 1, 5), 4 * PI, 1e-12);
+    ck_assert_double_le(fabs(column(q, 0, 2) + column(q, 1, 2) + column(q, 2, 2)), 1e-9);
+    assert_has(read_file(vtp), "NumberOfPoints=\"3\"");
+    SUCCEED(DUMBBELL, "--emissivity", "0.8", "--temperature", "T", "--members", "-o", members);
+    assert_near(column(members, 0, 2) + column(members, 1, 2), column(q, 0, 2), 1e-14);
+    assert_near(column(members, 0, 5), 3 * PI, 1e-12);
+    SUCCEED(DUMBBELL, "--emissivity", "0", "--temperature", "T", "--until", "1000", "--heat-capacity", "800",
+            "--density", "2500", "--convection", "20", "--gas-temperature", "400", "-o", q);
+    const double rate = 20 * 6 * PI / (800 * 2500 * 2.25 * PI);
+    ck_assert_double_eq_tol(column(q, 0, 2), 400 + 500 * exp(-rate * 1000), .05);
+    ck_assert_double_lt(fabs(value_of("balance_of_stored")), 1e-12);
+}
+
+TEST(words) {
+    const char *bad = write_file("bad.csv", "x,y,z,r,body,T\n0,0,0,1,3,900\n0.5,0,0,1,3,901\n");
+#define BLACK "--length-unit", "m", "--ambient", "300", "--emissivity", "1", "--temperature", "T"
+#define REFUSE(place, reason, ...)                                                                                     \
+    do {                                                                                                               \
+        FAIL_WITH(status, __VA_ARGS__);                                                                                \
+        expect_message(place, reason);                                                                                 \
+    } while (0)
+    int status = 3;
+    REFUSE(formatted("%s:3", bad), "sphere 1: the members of clump 3 have different temperatures", "heat", bad, BLACK,
+           "--clump", "body");
+    status = 2;
+    REFUSE("--members", "needs --clump", "heat", bad, BLACK, "--members");
+    REFUSE("--clump", "leave out --solid-conductivity", "heat", bad, BLACK, "--clump", "body", "--solid-conductivity",
+           "3");
+    REFUSE("--clump", "light on clumps is not computed", "heat", bad, BLACK, "--clump", "body", "--irradiate",
+           "0,0,-1:1000");
+}
+
+/* 2,000 settled clumps of three: no powers at equal temperatures. */
+TEST(settled_clumps) {
+    SUCCEED("heat", "tests/data/clumps2000.dump", "--clump", "id_multisphere", "--length-unit", "m", "--emissivity",
+            "0.6", "--temperature", "800", "--ambient", "800", "--directions", "24", "--patches", "24");
+    ck_assert_double_eq(value_of("power_largest_W"), 0);
+    ck_assert_double_eq(value_of("clumps"), 2000);
 }

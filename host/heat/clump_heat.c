@@ -50,8 +50,12 @@ int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) 
     enum { ARRAYS = 7 };
     struct clump_state *state = &h->clumps;
     fibrad_heat_result *result = &state->result;
-    double *area, **const of_bodies[ARRAYS] = {&area,           &result->temperature, &result->temperature_error,
-                                               &result->power,  &result->power_error, &result->conducted,
+    double *area, **const of_bodies[ARRAYS] = {&area,
+                                               &result->temperature,
+                                               &result->temperature_error,
+                                               &result->power,
+                                               &result->power_error,
+                                               &result->conducted,
                                                &result->convected};
     if (!h->bed->clump) return STATUS_OK;
     free(state->metres);

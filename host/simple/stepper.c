@@ -135,8 +135,8 @@ static void balance_energy(struct stepper *m, double length) {
             const uint32_t i = member[k];
             const double rate = m->span->capacity[i] / length, at = t->solution[i];
             missing += power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
-            stiff += rate +
-                     (4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i]);
+            stiff +=
+                rate + (4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i]);
         }
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t i = member[k];

@@ -38,11 +38,11 @@ struct contents {
 
     const struct side_arrays *of_sides; /* values of the triangles of meshes; NULL: none */
 
-    const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
-    const fibrad_light_result *light;   /* [W], light from outside that is absorbed; NULL: there is no light */
-    const fibrad_heat_result *result;   /* [W], [K]; arrays of insides are all set or all NULL, other arrays are set */
-    const double *area;                 /* [n] [m2] exposed; NULL: there are no clumps */
-    const struct bed *bodies;           /* what has lines in .csv and .json; NULL: spheres have */
+    const fibrad_heat_sources *sources;  /* [K]; surroundings NaN: the bed is closed */
+    const fibrad_light_result *light;    /* [W], light from outside that is absorbed; NULL: there is no light */
+    const fibrad_heat_result *result;    /* [W], [K]; arrays of insides are all set or all NULL, other arrays are set */
+    const double *area;                  /* [n] [m2] exposed; NULL: there are no clumps */
+    const struct bed *bodies;            /* what has lines in .csv and .json; NULL: spheres have */
     const fibrad_heat_result *of_bodies; /* the same of bodies */
     const double *area_of_bodies;
 
