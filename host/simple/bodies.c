@@ -65,12 +65,14 @@ static int ascending(const void *a, const void *b) {
     return x < y ? -1 : x > y;
 }
 
+static double root_of_squares(double a, double b) { return sqrt(a * a + b * b); }
+
 /* By how much the halves of a row differ, what is open included. */
 static double difference_of(const fibrad_row *row) {
     double square = 0, sum = 0;
     for (uint32_t k = 0; k < row->length; ++k)
         if (isfinite(row->half[k])) square += (double)row->half[k] * row->half[k], sum += row->half[k];
-    return fmax(sqrt(square + sum * sum), DBL_MIN);
+    return larger_of(sqrt(square + sum * sum), DBL_MIN);
 }
 
 /* Adds the row of a member. share: its area over that of the body. Errors of what walls take are alike for all. */
@@ -87,10 +89,10 @@ static void add_member(const fibrad_bodies *bodies, const fibrad_row *member, do
     }
     for (uint32_t w = 0; w < walls; ++w) row->wall[w] += share * member->wall[w];
     row->escaped += share * member->escaped, row->beyond += share * member->beyond;
-    if (!member->half) row->error = hypot(row->error, share * member->error);
-    if (member->half) to->gain = fmax(to->gain, member->error / difference_of(member));
+    if (!member->half) row->error = root_of_squares(row->error, share * member->error);
+    if (member->half) to->gain = larger_of(to->gain, member->error / difference_of(member));
     row->shares += share * member->shares;
-    row->noise = fmax(row->noise, member->noise * sqrt(share));
+    row->noise = larger_of(row->noise, member->noise * sqrt(share));
     row->lines = member->lines;
 }
 
@@ -110,7 +112,7 @@ static void end_row(uint32_t body, double hidden, uint32_t walls, struct merged_
     }
     for (uint32_t w = 0; w < walls; ++w) row->wall[w] *= scale;
     row->escaped *= scale, row->beyond *= scale;
-    if (row->lines > 0) row->error = hypot(fmin(to->gain, GAIN_MOST) * difference_of(row), row->shares);
+    if (row->lines > 0) row->error = root_of_squares(smaller_of(to->gain, GAIN_MOST) * difference_of(row), row->shares);
 }
 
 /* Merges all rows into one collection. of [spheres]: rows of spheres; without columns: there is none. */

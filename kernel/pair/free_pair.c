@@ -158,7 +158,7 @@ bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other,
     uint32_t between[MOST_HIDING];
     const pair_hull hull = hull_of(scene, place, other);
     *error = 0;
-    if (scene->cut[other] || fibrad_one_clump(scene, place, other)) return false;
+    if (scene->cut[other]) return false; /* members of one clump are pairs, too: what passes inside is then exact */
     const uint32_t count = spheres_between(scene, &hull, place, other, most, between);
     if (count > most || (scene->mesh.triangles > 0 && triangles_between(scene, &hull))) return false;
     if (fibrad_pair_exact(hull.r[0], hull.r[1], hull.length - (hull.r[0] + hull.r[1]), f) != FIBRAD_OK) return false;
