@@ -55,7 +55,7 @@ const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_N
             value[HEAT_LIGHT] = light->transmitted, value[HEAT_LIGHT + 1] = light->transmitted + light->reflected;
         return isnan(value[HEAT_TEMPERATURE]) ? NULL : "surroundings";
     }
-    value[HEAT_AREA] = r->wall_area[k];
+    if (what->area) value[HEAT_AREA] = r->wall_area[k];
     value[HEAT_TEMPERATURE] = r->wall_temperature[k], value[HEAT_TEMPERATURE_ERROR] = r->wall_temperature_error[k];
     value[HEAT_POWER] = r->wall_power[k], value[HEAT_POWER_ERROR] = r->wall_error[k];
     if (light) value[HEAT_LIGHT] = light->wall_absorbed_first[k], value[HEAT_LIGHT + 1] = light->wall_absorbed[k];
