@@ -318,7 +318,8 @@ typedef enum fibrad_why {
     FIBRAD_WHY_FILM = 27,         /* A film is negative or out of range, or the temperature of its gas is. */
     FIBRAD_WHY_CLUMP = 28,        /* A clump touches its own image in the next period. */
     FIBRAD_WHY_CLUMP_HEAT = 29,   /* Members of a clump have different temperatures, or only some have one. */
-    FIBRAD_WHY_CLUMP_SOLID = 30   /* A member of a clump has a finite conductivity. */
+    FIBRAD_WHY_CLUMP_SOLID = 30,  /* A member of a clump has a finite conductivity. */
+    FIBRAD_WHY_CLUMP_LIGHT = 31   /* Light on clumps is not computed. */
 } fibrad_why;
 
 /* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */

@@ -71,6 +71,7 @@ typedef struct fibrad_light_ends {
  *              FIBRAD_WHY_LIGHT: a number is out of range
  *              FIBRAD_WHY_DARK: no open face lets the light in
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
+ *            _UNSUPPORTED: the scene has clumps; fault.why is FIBRAD_WHY_CLUMP_LIGHT
  *            _WORK, _MEMORY
  *   Cost     as fibrad_beam_row with ten directions */
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,
@@ -109,7 +110,7 @@ uint32_t fibrad_heat_shine_tasks(const fibrad_heat *heat);
  *            where this light would end if there were neither spheres nor triangles. They add up to `spheres`.
  *            apart[spheres]: light of even directions of a cone minus that of odd ones, for the spheres of the task
  *            alone; may be NULL
- *   Errors   as fibrad_light_empty; _STATE: the scene has changed; _UNSUPPORTED: the scene has clumps
+ *   Errors   as fibrad_light_empty; _STATE: the scene has changed
  *   Cost     2 microseconds for each sphere and direction; work memory has 8 bytes for each patch of the task */
 int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_light *light, uint32_t task,
                       double *hits, fibrad_light_ends *kept, double *apart);

@@ -326,7 +326,17 @@ TEST(refused) {
     l.t[1] = NAN, l.power[1] = 0;
     ck_assert_int_eq(solve_status(&l, NULL, &s), FIBRAD_E_ARGUMENT);
     l.t[1] = 900, l.power[1] = NAN;
-    const double conductivity[] = {INFINITY, 3};
+    const double conductivity[] = {INFINITY, 3}, absorptivity[] = {1, 1};
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 1};
+    fibrad_light_result absorbed = {.absorbed = s.power, .absorbed_first = s.error};
+    OWNED_MADE *made = NULL;
+    const fibrad_spheres spheres = spheres_of_lumps(&l);
+    fibrad_fault fault;
+    assert_ok(fibrad_bed_new(&made, NULL, &spheres, NULL));
+    ck_assert_int_eq(fibrad_bed_shine(made, &(fibrad_light_sources){&light, 1, absorptivity, NULL, 0}, &absorbed),
+                     FIBRAD_E_UNSUPPORTED);
+    fibrad_bed_describe(made, NULL, &fault);
+    ck_assert_int_eq(fault.why, FIBRAD_WHY_CLUMP_LIGHT);
     ck_assert_int_eq(solve_status(&l, &(fibrad_heat_sources){.conductivity = conductivity}, &s), FIBRAD_E_ARGUMENT);
     assert_ok(solve_status(&l, NULL, &s));
 }

@@ -196,7 +196,6 @@ int fibrad_heat_shine(const fibrad_heat *heat, fibrad_work *work, const fibrad_l
     if (heat == NULL || work == NULL || hits == NULL || kept == NULL || task >= fibrad_heat_shine_tasks(heat))
         return FIBRAD_E_ARGUMENT;
     if (!fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
-    if (heat->clumps.some) return FIBRAD_E_UNSUPPORTED; /* discs do not tell which member light falls on */
     const uint32_t begin = task * SHINE_SPHERES;
     const uint32_t end = heat->spheres - begin < SHINE_SPHERES ? heat->spheres : begin + SHINE_SPHERES;
     double *const first = hits + heat->first[begin];
