@@ -556,3 +556,25 @@ TEST(settled_clumps) {
     ck_assert_double_eq(value_of("power_largest_W"), 0);
     ck_assert_double_eq(value_of("clumps"), 2000);
 }
+
+/* A bed that has moved is that of a new one. */
+TEST(moved) {
+    struct lumps l = two_clumps();
+    OWNED_MADE *made = NULL;
+    struct solved now, s = {.result = {.power = s.power, .temperature = s.t}};
+    fibrad_spheres spheres = spheres_of_lumps(&l);
+    const fibrad_heat_sources sources = {
+        .temperature = l.t, .emissivity = l.e, .power = l.power, .sigma = SIGMA, .tolerance = 1e-10};
+    l.half = 0;
+    set_clump(&l, 7, NAN, 3000), set_clump(&l, 3, 1000, 0);
+    assert_ok(fibrad_bed_new(&made, NULL, &spheres, NULL));
+    assert_ok(fibrad_bed_solve(made, &sources, NULL, &s.result));
+    for (uint32_t i = 0; i < l.n; i++) l.at[i][1] *= l.clump[i] == 3 ? 1 : 1.3;
+    assert_ok(fibrad_bed_move(made, NULL, &spheres));
+    assert_ok(fibrad_bed_solve(made, &sources, NULL, &s.result));
+    l.around = 0;
+    solve(&l, &now);
+    for (uint32_t i = 0; i < l.n; i++) assert_near(s.power[i], now.power[i], 1e-7), assert_near(s.t[i], now.t[i], 1e-8);
+    spheres.clump = NULL, spheres.n = l.n;
+    ck_assert_int_ne(fibrad_bed_move(made, NULL, &spheres), FIBRAD_OK);
+}
