@@ -23,8 +23,12 @@ static int by_clump(const void *a, const void *b) {
     return x->clump != y->clump ? (x->clump < y->clump ? -1 : 1) : x->sphere < y->sphere ? -1 : x->sphere > y->sphere;
 }
 
-int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **out) {
-    const uint32_t n = bed->facts.spheres, *clump = bed->spheres.clump;
+int fibrad_bodies_find(const fibrad_scene *scene, const fibrad_spheres *spheres, fibrad_bodies **out) {
+    const uint32_t n = spheres->n, *clump = spheres->clump;
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    *out = NULL;
+    if (facts.clumps == 0) return FIBRAD_OK;
     struct clumped *list = malloc(((size_t)n + 1) * sizeof *list);
     fibrad_bodies *bodies = malloc(sizeof *bodies + ((size_t)n + 1) * (sizeof(double) + 3 * sizeof(uint32_t)));
     if (!list || !bodies) {
@@ -46,7 +50,7 @@ int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **out) {
     for (uint32_t i = 0; i < n; ++i) ++bodies->start[bodies->body[i]];
     for (uint32_t b = 0, end = 0; b <= bodies->n; ++b) end += bodies->start[b], bodies->start[b] = end;
     for (uint32_t i = n; i-- > 0;) bodies->member[--bodies->start[bodies->body[i]]] = i;
-    for (uint32_t i = 0; i < n; ++i) bodies->area[bodies->body[i]] += fibrad_scene_exposed_area(bed->scene, i);
+    for (uint32_t i = 0; i < n; ++i) bodies->area[bodies->body[i]] += fibrad_scene_exposed_area(scene, i);
     free(list);
     *out = bodies;
     return FIBRAD_OK;
@@ -75,7 +79,7 @@ static double difference_of(const fibrad_row *row) {
     return larger_of(sqrt(square + sum * sum), DBL_MIN);
 }
 
-/* Adds the row of a member. share: its area over that of the body. Errors of what walls take are alike for all. */
+/* Adds the row of a member. share: its area over that of the body. Members err alike in what walls take. */
 static void add_member(const fibrad_bodies *bodies, const fibrad_row *member, double share, uint32_t walls,
                        struct merged_row *to) {
     fibrad_row *row = &to->row;

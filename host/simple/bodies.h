@@ -13,8 +13,8 @@ typedef struct fibrad_bodies {
     double *area; /* L^2, [n], exposed */
 } fibrad_bodies;
 
-/* Finds the bodies of a bed with clumps. Free them with free(). Errors: _MEMORY. */
-int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **bodies);
+/* Finds the bodies of the spheres of a scene. Free them with free(). Without clumps they are NULL. Errors: _MEMORY. */
+int fibrad_bodies_find(const fibrad_scene *scene, const fibrad_spheres *spheres, fibrad_bodies **bodies);
 
 /* Makes the rows of bodies from the rows of their spheres that the team has collected. These go. Errors: _MEMORY. */
 int fibrad_bodies_merge(fibrad_bed *bed);
