@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "simple/bodies.h"
 #include "simple/contact_list.h"
 
 int fibrad_bed_begin(fibrad_bed *bed) {

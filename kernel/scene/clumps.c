@@ -45,7 +45,7 @@ static double sine_of(double angle) {
 }
 
 /* An angle in [0, 2 pi). */
-static double around(double angle) {
+static double within_turn(double angle) {
     while (angle < 0) angle += 2 * FIBRAD_PI;
     while (angle >= 2 * FIBRAD_PI) angle -= 2 * FIBRAD_PI;
     return angle;
@@ -91,7 +91,7 @@ static meeting meet(const fibrad_cap *a, const fibrad_cap *b, double hidden[2]) 
     for (int end = 0; end < 2; end++) {
         double p[3];
         for (int k = 0; k < 3; k++) p[k] = x * sum[k] + y * difference[k] + (end ? -z : z) * across[k];
-        hidden[end] = around(angle_at_point(fibrad_dot(p, u), fibrad_dot(p, v)));
+        hidden[end] = within_turn(angle_at_point(fibrad_dot(p, u), fibrad_dot(p, v)));
     }
     if (hidden[1] < hidden[0]) hidden[1] += 2 * FIBRAD_PI;
     return CUT;
