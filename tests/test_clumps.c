@@ -143,6 +143,17 @@ TEST(special_places) {
     exposed(&b, area, &facts);
     assert_near(area[0] + area[2], 2 * PI * (2 + sqrt(2)), 1e-11);
     ck_assert(facts.covered == 1 && area[1] == 0);
+    /* nine beads on a skew line, all through one circle: the outermost two have all of the surface */
+    b.n = b.members = 9;
+    double sum = 0;
+    for (int i = 0; i < 9; ++i) {
+        const double along = .137 * i * i - 2.1;
+        for (int k = 0; k < 3; ++k) b.at[i][k] = 3 + (const double[]){.48, -.6, .64}[k] * along;
+        b.r[i] = sqrt(.49 + along * along);
+        if (i % 8 == 0) sum += 2 * PI * b.r[i] * (b.r[i] + fabs(along));
+    }
+    exposed(&b, area, &facts);
+    assert_near(sum_of(area, 9), sum, 1e-10);
 }
 
 /* A sphere cut into slices: how much of the circle at height z is free. */

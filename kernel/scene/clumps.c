@@ -12,8 +12,8 @@
 #include "scene/grid_walk.h"
 
 #define TOUCH   1e-3  /* members with a smaller gap touch, over the smaller radius: files have few digits */
-#define NEAR    1e-14 /* circles closer than this agree or touch [radians] */
-#define NOTHING 1e-13 /* a part of a sphere that is rounding */
+#define NEAR    1e-10 /* circles closer than this agree or touch [radians]: by rounding they differ */
+#define NOTHING 1e-10 /* a part of a sphere that is rounding */
 
 void fibrad_clumps_layout(fibrad_arena *arena, uint32_t n, fibrad_clumps *clumps) {
     clumps->exposed = fibrad_arena_take(arena, n, sizeof *clumps->exposed);
