@@ -398,8 +398,9 @@ typedef struct fibrad_scene_facts {
 /* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
-/* Area of a sphere that no other member of its clump hides [L^2], to rounding. Walls and other spheres hide nothing of
- * it. For a sphere that is alone this is 4 pi r^2.
+/* Area of a sphere that no other member of its clump hides [L^2]. It is exact to rounding, or to 1e-9 r^2 if circles in
+ * which members cut nearly agree. Walls and other spheres hide nothing of it. For a sphere that is alone this is
+ * 4 pi r^2.
  *   Input    i: 0 to spheres - 1
  *   Output   NaN: i is out of range, or the scene is not complete
  *   Source   docs/methods.md section 5 */

@@ -143,6 +143,17 @@ TEST(special_places) {
     exposed(&b, area, &facts);
     assert_near(area[0] + area[2], 2 * PI * (2 + sqrt(2)), 1e-11);
     ck_assert(facts.covered == 1 && area[1] == 0);
+    /* nine beads on a skew line, all through one circle: the outermost two have all of the surface */
+    b.n = b.members = 9;
+    double sum = 0;
+    for (int i = 0; i < 9; ++i) {
+        const double along = .137 * i * i - 2.1;
+        for (int k = 0; k < 3; ++k) b.at[i][k] = 3 + (const double[]){.48, -.6, .64}[k] * along;
+        b.r[i] = sqrt(.49 + along * along);
+        if (i % 8 == 0) sum += 2 * PI * b.r[i] * (b.r[i] + fabs(along));
+    }
+    exposed(&b, area, &facts);
+    assert_near(sum_of(area, 9), sum, 1e-10);
 }
 
 /* A sphere cut into slices: how much of the circle at height z is free. */
@@ -263,32 +274,48 @@ static void even(struct rays *rays, double v[3]) {
     v[0] = ring * cos(turn), v[1] = ring * sin(turn), v[2] = z;
 }
 
-/* Follows a ray from body `from` (0: the clump). low, high: a box of walls; NULL: none. False: the point is hidden. */
-static bool one_ray(const struct bodies *b, uint32_t from, const double box[2], struct rays *rays) {
+/* The body that a ray from a point of sphere i meets first: 0: the clump; MOST + 6: none. best: its distance. */
+static uint32_t first_met(const struct bodies *b, uint32_t i, const double o[3], const double w[3], double *best) {
+    uint32_t to = MOST + 6;
+    *best = INFINITY;
+    for (uint32_t j = 0; j < b->n; ++j) {
+        double along = 0, square = -b->r[j] * b->r[j];
+        for (int k = 0; k < 3; ++k) along += (o[k] - b->at[j][k]) * w[k], square += pow(o[k] - b->at[j][k], 2);
+        const double root = along * along - square;
+        if (j == i || along >= 0 || root <= 0 || -along - sqrt(root) >= *best) continue;
+        *best = -along - sqrt(root), to = j < b->members ? 0 : j - b->members + 1;
+    }
+    return to;
+}
+
+/* Whether a point of member i lies within another member. */
+static bool is_hidden(const struct bodies *b, uint32_t i, const double o[3]) {
+    for (uint32_t j = 0; j < b->members && i < b->members; ++j) {
+        double square = 0;
+        for (int k = 0; k < 3; ++k) square += pow(o[k] - b->at[j][k], 2);
+        if (j != i && square < b->r[j] * b->r[j]) return true;
+    }
+    return false;
+}
+
+/* Follows a ray from body `from` (0: the clump), unless the point is hidden. box: of walls; NULL: none. */
+static void one_ray(const struct bodies *b, uint32_t from, const double box[2], struct rays *rays) {
     const uint32_t first = from == 0 ? 0 : b->members + from - 1, end = from == 0 ? b->members : first + 1;
-    double n[3], u[3], o[3], w[3], length = 0, best = INFINITY, pick = 0;
-    uint32_t i = first, to = MOST + 6;
+    double n[3], u[3], o[3], w[3], length = 0, best, pick = 0;
+    uint32_t i = first;
     for (uint32_t j = first; j < end; ++j) pick += b->r[j] * b->r[j];
     pick *= fraction(rays);
     while (i < end - 1 && (pick -= b->r[i] * b->r[i]) >= 0) ++i;
     even(rays, n), even(rays, u);
     for (int k = 0; k < 3; ++k) o[k] = b->at[i][k] + b->r[i] * n[k], w[k] = n[k] + u[k], length += w[k] * w[k];
     for (int k = 0; k < 3; ++k) w[k] /= sqrt(length);
-    for (uint32_t j = 0; j < b->n; ++j) {
-        double along = 0, square = -b->r[j] * b->r[j];
-        for (int k = 0; k < 3; ++k) along += (o[k] - b->at[j][k]) * w[k], square += pow(o[k] - b->at[j][k], 2);
-        if (j == i) continue;
-        if (j >= first && j < end && square < 0) return false;
-        const double root = along * along - square;
-        if (along >= 0 || root <= 0 || -along - sqrt(root) >= best) continue;
-        best = -along - sqrt(root), to = j < b->members ? 0 : j - b->members + 1;
-    }
+    if (is_hidden(b, i, o)) return;
+    uint32_t to = first_met(b, i, o, w, &best);
     for (uint32_t wall = 0; wall < 6 && box; ++wall) {
         const double s = (box[wall % 2] - o[wall / 2]) / w[wall / 2];
         if (s > 0 && s < best) best = s, to = MOST + wall;
     }
     ++rays->n, ++rays->hits[to];
-    return true;
 }
 
 static struct rays follow(const struct bodies *b, uint32_t from, const double box[2], int count) {
@@ -338,6 +365,31 @@ LOOP_TEST(four_spheres, 4) {
         assert_seen(&rays, MOST + 6, factors->matrix.escaped[from], error);
         ck_assert(error < .003);
     }
+}
+
+/* A far sphere that few windows meet, half hidden by another one. Own rays go from it to points about the clump. */
+TEST(far_spheres) {
+    struct bodies b = four;
+    const double far[2][3] = {{14, 3, -6}, {7.6, 1.7, -3}}, radius = 2;
+    for (int k = 0; k < 6; ++k) b.at[4 + k / 3][k % 3] = far[k / 3][k % 3];
+    b.r[4] = .9, b.r[5] = .6;
+    OWNED_FACTORS *factors = factors_of(&b, 64);
+    struct rays rays = {.random = 5};
+    double sum = 0, square = 0;
+    enum { RAYS = 1000000 };
+    for (int ray = 0; ray < RAYS; ++ray) {
+        double n[3], u[3], o[3], w[3], best, length = 0, leaves = 0, arrives = 0;
+        even(&rays, n), even(&rays, u);
+        for (int k = 0; k < 3; ++k)
+            o[k] = far[0][k] + b.r[4] * n[k], w[k] = radius * u[k] - o[k], length += w[k] * w[k];
+        for (int k = 0; k < 3; ++k) w[k] /= sqrt(length), leaves += w[k] * n[k], arrives -= w[k] * u[k];
+        if (leaves <= 0 || arrives <= 0 || first_met(&b, 4, o, w, &best) != 0) continue;
+        const double part = 4 * radius * radius * leaves * arrives / length; /* 4 pi R^2 cos cos/(pi s^2) */
+        sum += part / RAYS, square += part * part / RAYS;
+    }
+    const double error = sqrt((square - sum * sum) / RAYS);
+    ck_assert_double_eq_tol(factor(factors, 1, 0), sum, 4 * error + 2 * factors->matrix.error[1]);
+    ck_assert(factors->matrix.error[1] < .1 * sum && error < .02 * sum);
 }
 
 /* Rays of the library meet the same union. */

@@ -22,7 +22,7 @@ int bed_take_clumps(struct bed *bed, const char *file, size_t extra, bool lone) 
     return STATUS_OK;
 }
 
-static int ascending(const void *a, const void *b) {
+static int by_id(const void *a, const void *b) {
     const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
     return x < y ? -1 : x > y;
 }
@@ -33,14 +33,14 @@ static int are_different(const int64_t *id, uint32_t n, bool *different) {
     *different = true;
     if (!sorted) return message_memory();
     for (uint32_t k = 0; k < n; ++k) sorted[k] = id[k];
-    qsort(sorted, n, sizeof *sorted, ascending);
+    qsort(sorted, n, sizeof *sorted, by_id);
     for (uint32_t k = 1; k < n; ++k) *different = *different && sorted[k] != sorted[k - 1];
     free(sorted);
     return STATUS_OK;
 }
 
 /* Adds to a body the place of a member, by its nearest image to the first member. */
-static void add_place(const struct bed *bed, uint32_t i, uint32_t first, double sum[3]) {
+static void add_member_place(const struct bed *bed, uint32_t i, uint32_t first, double sum[3]) {
     for (int axis = 0; axis < 3; ++axis) {
         const double *c = bed_centres(bed, axis), period = bed->period[axis], d = c[i] - c[first];
         sum[axis] += period > 0 ? d - period * rint(d / period) : d;
@@ -57,7 +57,7 @@ int bed_bodies(const struct bed *bed, uint32_t n, const uint32_t *body, const do
     int status = of ? STATUS_OK : message_memory();
     for (uint32_t i = 0; i < bed->n && !status; ++i) {
         if (of[body[i]].members++ == 0) of[body[i]].first = i;
-        add_place(bed, i, of[body[i]].first, of[body[i]].sum);
+        add_member_place(bed, i, of[body[i]].first, of[body[i]].sum);
     }
     for (uint32_t b = 0; b < n && !status; ++b) {
         const uint32_t i = of[b].first, clump = bed->clump[i], members = of[b].members;

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "simple/bodies.h"
 #include "simple/contact_list.h"
 
 int fibrad_bed_begin(fibrad_bed *bed) {
@@ -91,16 +90,19 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     fibrad_scene *scene;
     void *block;
     struct given *given = NULL;
+    fibrad_bodies *bodies = NULL;
     const uint32_t n = spheres->n;
     bed->fault = (fibrad_fault){n, n, UINT32_MAX, 0, 0};
     if (bed->scene && (n != bed->facts.spheres || (config ? config->walls : 0) != bed->facts.walls))
         return FIBRAD_E_ARGUMENT;
     int status = fibrad_heap_scene(&scene, &block, config, spheres, &bed->fault);
     if (!status) status = keep_given(config, spheres, &given);
+    if (!status) status = fibrad_bodies_find(scene, spheres, &bodies);
     if (!status && bed->heat) status = fibrad_heat_move(bed->heat, scene);
     if (status && status != FIBRAD_E_SIZE) {
         free(block);
         free(given);
+        free(bodies);
         return status;
     }
     if (status) { /* the moved walls need a larger block */
@@ -109,17 +111,16 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     }
     free(bed->scene_block);
     free(bed->given);
-    bed->scene = scene, bed->scene_block = block, bed->given = given;
+    free(bed->bodies);
+    bed->scene = scene, bed->scene_block = block, bed->given = given, bed->bodies = bodies;
     bed->config = given->config, bed->spheres = given->spheres;
     bed->traced = false;
     fibrad_scene_describe(scene, &bed->facts);
-    free(bed->bodies);
-    bed->bodies = NULL;
     fibrad_stepping_move(bed);
     memset(bed->warning, 0, sizeof bed->warning);
     free(bed->contacts);
     bed->contacts = NULL;
-    return bed->facts.clumps > 0 ? fibrad_bodies_find(bed, &bed->bodies) : FIBRAD_OK;
+    return FIBRAD_OK;
 }
 
 int fibrad_bed_new(fibrad_bed **out, const fibrad_scene_config *config, const fibrad_spheres *spheres,

@@ -23,8 +23,12 @@ static int by_clump(const void *a, const void *b) {
     return x->clump != y->clump ? (x->clump < y->clump ? -1 : 1) : x->sphere < y->sphere ? -1 : x->sphere > y->sphere;
 }
 
-int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **out) {
-    const uint32_t n = bed->facts.spheres, *clump = bed->spheres.clump;
+int fibrad_bodies_find(const fibrad_scene *scene, const fibrad_spheres *spheres, fibrad_bodies **out) {
+    const uint32_t n = spheres->n, *clump = spheres->clump;
+    fibrad_scene_facts facts;
+    fibrad_scene_describe(scene, &facts);
+    *out = NULL;
+    if (facts.clumps == 0) return FIBRAD_OK;
     struct clumped *list = malloc(((size_t)n + 1) * sizeof *list);
     fibrad_bodies *bodies = malloc(sizeof *bodies + ((size_t)n + 1) * (sizeof(double) + 3 * sizeof(uint32_t)));
     if (!list || !bodies) {
@@ -46,7 +50,7 @@ int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **out) {
     for (uint32_t i = 0; i < n; ++i) ++bodies->start[bodies->body[i]];
     for (uint32_t b = 0, end = 0; b <= bodies->n; ++b) end += bodies->start[b], bodies->start[b] = end;
     for (uint32_t i = n; i-- > 0;) bodies->member[--bodies->start[bodies->body[i]]] = i;
-    for (uint32_t i = 0; i < n; ++i) bodies->area[bodies->body[i]] += fibrad_scene_exposed_area(bed->scene, i);
+    for (uint32_t i = 0; i < n; ++i) bodies->area[bodies->body[i]] += fibrad_scene_exposed_area(scene, i);
     free(list);
     *out = bodies;
     return FIBRAD_OK;
@@ -60,7 +64,7 @@ struct merged_row {
     double gain;          /* largest error of a member over what its halves differ by */
 };
 
-static int ascending(const void *a, const void *b) {
+static int by_column(const void *a, const void *b) {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return x < y ? -1 : x > y;
 }
@@ -68,14 +72,14 @@ static int ascending(const void *a, const void *b) {
 static double root_of_squares(double a, double b) { return sqrt(a * a + b * b); }
 
 /* By how much the halves of a row differ, what is open included. */
-static double difference_of(const fibrad_row *row) {
+static double halves_apart(const fibrad_row *row) {
     double square = 0, sum = 0;
     for (uint32_t k = 0; k < row->length; ++k)
         if (isfinite(row->half[k])) square += (double)row->half[k] * row->half[k], sum += row->half[k];
     return larger_of(sqrt(square + sum * sum), DBL_MIN);
 }
 
-/* Adds the row of a member. share: its area over that of the body. Errors of what walls take are alike for all. */
+/* Adds the row of a member. share: its area over that of the body. Members err alike in what walls take. */
 static void add_member(const fibrad_bodies *bodies, const fibrad_row *member, double share, uint32_t walls,
                        struct merged_row *to) {
     fibrad_row *row = &to->row;
@@ -90,7 +94,7 @@ static void add_member(const fibrad_bodies *bodies, const fibrad_row *member, do
     for (uint32_t w = 0; w < walls; ++w) row->wall[w] += share * member->wall[w];
     row->escaped += share * member->escaped, row->beyond += share * member->beyond;
     if (!member->half) row->error = root_of_squares(row->error, share * member->error);
-    if (member->half) to->gain = larger_of(to->gain, member->error / difference_of(member));
+    if (member->half) to->gain = larger_of(to->gain, member->error / halves_apart(member));
     row->shares += share * member->shares;
     row->noise = larger_of(row->noise, member->noise * sqrt(share));
     row->lines = member->lines;
@@ -104,7 +108,7 @@ static void end_row(uint32_t body, double hidden, uint32_t walls, struct merged_
     if (hidden > 0 && !to->met[body]) row->col[row->length++] = body, to->value[body] = 0, to->half[body] = 0;
     if (hidden > 0) to->value[body] -= hidden;
     if (hidden > 0 && to->value[body] < 0) scale = 1 / (1 - to->value[body]), to->value[body] = 0;
-    qsort(row->col, row->length, sizeof *row->col, ascending);
+    qsort(row->col, row->length, sizeof *row->col, by_column);
     for (uint32_t k = 0; k < row->length; ++k) {
         const uint32_t b = row->col[k];
         row->f[k] = scale * to->value[b], row->half[k] = (float)to->half[b];
@@ -112,13 +116,12 @@ static void end_row(uint32_t body, double hidden, uint32_t walls, struct merged_
     }
     for (uint32_t w = 0; w < walls; ++w) row->wall[w] *= scale;
     row->escaped *= scale, row->beyond *= scale;
-    if (row->lines > 0) row->error = root_of_squares(smaller_of(to->gain, GAIN_MOST) * difference_of(row), row->shares);
+    if (row->lines > 0) row->error = root_of_squares(smaller_of(to->gain, GAIN_MOST) * halves_apart(row), row->shares);
 }
 
 /* Merges all rows into one collection. of [spheres]: rows of spheres; without columns: there is none. */
-static int merge_all(const fibrad_bed *bed, const fibrad_row *of, struct merged_row *to, fibrad_rows *rows) {
-    const fibrad_bodies *bodies = bed->bodies;
-    const uint32_t walls = bed->facts.walls;
+static int merge_all(const fibrad_bodies *bodies, const fibrad_spheres *spheres, uint32_t walls, const fibrad_row *of,
+                     struct merged_row *to, fibrad_rows *rows) {
     int status = FIBRAD_OK;
     for (uint32_t b = 0; b < bodies->n && !status; ++b) {
         double whole = 0;
@@ -129,7 +132,7 @@ static int merge_all(const fibrad_bed *bed, const fibrad_row *of, struct merged_
         for (uint32_t w = 0; w < walls; ++w) row->wall[w] = 0;
         for (uint32_t k = bodies->start[b]; k < bodies->start[b + 1]; ++k) {
             const uint32_t i = bodies->member[k];
-            const double r = bed->spheres.r[i], share = 4 * M_PI * (r * r) / bodies->area[b];
+            const double r = spheres->r[i], share = 4 * M_PI * (r * r) / bodies->area[b];
             add_member(bodies, &of[i], share, walls, to);
             whole += share;
         }
@@ -139,25 +142,25 @@ static int merge_all(const fibrad_bed *bed, const fibrad_row *of, struct merged_
     return status;
 }
 
-int fibrad_bodies_merge(fibrad_bed *bed) {
-    const uint32_t n = bed->facts.spheres, bodies = bed->bodies->n;
-    fibrad_team *team = &bed->team;
+int fibrad_bodies_merge(const fibrad_bodies *bodies, const fibrad_spheres *spheres, uint32_t walls, const char *scratch,
+                        fibrad_team *team) {
+    const size_t n = bodies->n + (size_t)1;
     fibrad_scratch store;
-    int status = fibrad_scratch_open(&store, bed->scratch);
+    int status = fibrad_scratch_open(&store, scratch);
     if (status) return status;
     fibrad_rows rows = {.memory = {.resize = fibrad_scratch_resize, .context = &store}};
     double wall[FIBRAD_WALLS_MAX];
-    fibrad_row *of = calloc((size_t)n + 1, sizeof *of), row;
-    double *block = calloc((size_t)bodies + 1, 3 * sizeof *block + sizeof(float) + sizeof(uint32_t) + 1);
+    fibrad_row *of = calloc(spheres->n + (size_t)1, sizeof *of), row;
+    double *block = calloc(n, 3 * sizeof *block + sizeof(float) + sizeof(uint32_t) + 1);
     status = of && block ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (int t = 0; t < team->threads && !status; ++t)
         for (size_t at = 0; fibrad_rows_read(&team->rows[t], &at, &row);) of[row.sphere] = row;
     if (!status) {
-        struct merged_row to = {.value = block, .half = block + bodies + 1};
-        to.row.f = to.half + bodies + 1, to.row.half = (float *)(to.row.f + bodies + 1);
-        to.row.col = (uint32_t *)(to.row.half + bodies + 1), to.met = (unsigned char *)(to.row.col + bodies + 1);
+        struct merged_row to = {.value = block, .half = block + n};
+        to.row.f = to.half + n, to.row.half = (float *)(to.row.f + n);
+        to.row.col = (uint32_t *)(to.row.half + n), to.met = (unsigned char *)(to.row.col + n);
         to.row.wall = wall;
-        status = merge_all(bed, of, &to, &rows);
+        status = merge_all(bodies, spheres, walls, of, &to, &rows);
     }
     free(of);
     free(block);
@@ -165,7 +168,8 @@ int fibrad_bodies_merge(fibrad_bed *bed) {
         fibrad_scratch_close(&store);
         return status;
     }
-    fibrad_team_forget(team);
+    for (int t = 0; t < team->threads; ++t) fibrad_rows_clear(&team->rows[t]);
+    fibrad_scratch_close(&team->store[0]);
     team->store[0] = store, team->rows[0] = rows;
     team->rows[0].memory.context = &team->store[0];
     return FIBRAD_OK;

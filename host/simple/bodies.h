@@ -2,7 +2,7 @@
 #ifndef FIBRAD_SIMPLE_BODIES_H
 #define FIBRAD_SIMPLE_BODIES_H
 
-#include "simple/rows.h"
+#include "simple/team.h"
 
 /* The bodies of a bed, in the order of their first spheres. */
 typedef struct fibrad_bodies {
@@ -13,10 +13,12 @@ typedef struct fibrad_bodies {
     double *area; /* L^2, [n], exposed */
 } fibrad_bodies;
 
-/* Finds the bodies of a bed with clumps. Free them with free(). Errors: _MEMORY. */
-int fibrad_bodies_find(const fibrad_bed *bed, fibrad_bodies **bodies);
+/* Finds the bodies of the spheres of a scene. Free them with free(). Without clumps they are NULL. Errors: _MEMORY. */
+int fibrad_bodies_find(const fibrad_scene *scene, const fibrad_spheres *spheres, fibrad_bodies **bodies);
 
-/* Makes the rows of bodies from the rows of their spheres that the team has collected. These go. Errors: _MEMORY. */
-int fibrad_bodies_merge(fibrad_bed *bed);
+/* Makes the rows of bodies from the rows of their spheres that the team has collected. These go. walls: their number;
+ * scratch: as in fibrad_bed_rule. Errors: _MEMORY, and as fibrad_scratch_open. */
+int fibrad_bodies_merge(const fibrad_bodies *bodies, const fibrad_spheres *spheres, uint32_t walls, const char *scratch,
+                        fibrad_team *team);
 
 #endif

@@ -2,7 +2,7 @@
 #include <omp.h>
 #include <stdlib.h>
 
-#include "simple/bodies.h"
+#include "simple/rows.h"
 
 static int row_by_rays(const void *rule, const fibrad_scene *scene, fibrad_work *work, uint32_t i, fibrad_row *row,
                        uint64_t *rays) {

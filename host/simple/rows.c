@@ -1,5 +1,5 @@
 /* rows.c - rows of a bed by many threads, and their matrix. SPDX-License-Identifier: MIT */
-#include "simple/bodies.h"
+#include "simple/rows.h"
 
 #include <math.h>
 #include <omp.h>
@@ -118,7 +118,8 @@ int fibrad_bed_rows(fibrad_bed *bed, fibrad_row_method *row, const void *rule, c
     }
     free(order);
     free(part);
-    return status || !bed->bodies ? status : fibrad_bodies_merge(bed);
+    if (status || !bed->bodies) return status;
+    return fibrad_bodies_merge(bed->bodies, &bed->spheres, bed->facts.walls, bed->scratch, team);
 }
 
 /* ---- lines ------------------------------------------------------------------------------------------------------ */

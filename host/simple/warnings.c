@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "simple/bodies.h"
+#include "simple/bed.h"
 #include "simple/cylinder.h"
 
 #define OVERLAP_LARGE 0.05  /* overlap over the smaller radius */

@@ -13,8 +13,8 @@
 #include "scene/grid_walk.h"
 
 #define TOUCH   1e-3  /* members with a smaller gap touch, over the smaller radius: files have few digits */
-#define NEAR    1e-14 /* circles closer than this agree or touch [radians] */
-#define NOTHING 1e-13 /* a part of a sphere that is rounding */
+#define NEAR    1e-10 /* circles closer than this agree or touch [radians]: by rounding they differ */
+#define NOTHING 1e-10 /* a part of a sphere that is rounding */
 
 void fibrad_clumps_layout(fibrad_arena *arena, uint32_t n, fibrad_clumps *clumps) {
     clumps->exposed = fibrad_arena_take(arena, n, sizeof *clumps->exposed);
@@ -48,7 +48,7 @@ static double sine_of(double angle) {
 }
 
 /* An angle in [0, 2 pi). */
-static double around(double angle) {
+static double within_turn(double angle) {
     while (angle < 0) angle += 2 * FIBRAD_PI;
     while (angle >= 2 * FIBRAD_PI) angle -= 2 * FIBRAD_PI;
     return angle;
@@ -94,7 +94,7 @@ static meeting meet(const fibrad_cap *a, const fibrad_cap *b, double hidden[2]) 
     for (int end = 0; end < 2; end++) {
         double p[3];
         for (int k = 0; k < 3; k++) p[k] = x * sum[k] + y * difference[k] + (end ? -z : z) * across[k];
-        hidden[end] = around(angle_at_point(fibrad_dot(p, u), fibrad_dot(p, v)));
+        hidden[end] = within_turn(angle_at_point(fibrad_dot(p, u), fibrad_dot(p, v)));
     }
     if (hidden[1] < hidden[0]) hidden[1] += 2 * FIBRAD_PI;
     return CUT;

@@ -397,7 +397,7 @@ def test_clumps_are_bodies():
     assert factors.area[0] * factors.matrix[0, 1] == pytest.approx(factors.area[1] * factors.matrix[1, 0], rel=1e-14)
     with pytest.warns(UserWarning, match="do not touch"):
         fibrad.view_factors(x, 0.4, clump=[1, 1, 0])
-    with pytest.raises(fibrad.InputError, match="centre lies inside"):
+    with pytest.raises(fibrad.InputError, match="centre of one lies inside"):
         fibrad.view_factors(x, [1, 1.5, 1])
     with pytest.raises(fibrad.InputError, match="exchange factors of clumps"):
         fibrad.exchange_factors(x, r, 0.5, clump=clump)
