@@ -46,6 +46,7 @@ static const struct option heat_table[] = {
     {0, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature",
      TO_FLAG(struct heat, face.wanted)},
     OPTIONS_CONTACTS_RARE(struct heat),
+    OPTIONS_STREAM(struct heat),
     {OPTION_PROFILE(struct heat)},
     {OPTION_STEP(struct heat)},
     {0, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]",
@@ -169,5 +170,6 @@ int command_heat(int argc, char **argv) {
     curve_free(&heat.contacts.gas_curve);
     curve_free(&heat.given.ambient_curve);
     curve_free(&heat.film.gas_curve);
+    curve_free(&heat.film.capacity_curve);
     return ended;
 }

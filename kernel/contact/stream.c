@@ -9,7 +9,7 @@
 
 #include "base/port.h"
 
-#define SLICE_MAX   60u    /* Newton steps of one slice */
+#define SLICE_MAX   60u   /* Newton steps of one slice */
 #define SLICE_FOUND 4e-16 /* relative change of a temperature that ends them */
 
 enum { GAS, FILMS, SUMS }; /* rows of fibrad_stream.gas */

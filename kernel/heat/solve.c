@@ -42,8 +42,8 @@
  * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
  * to step, and each direction is made conjugate to the last one with the present g.
  *
- * A stream of gas makes the system one that is not symmetric. During a search its temperatures are given. Where a search
- * would end they are found anew, with the radiation that now arrives, until they no longer change. */
+ * A stream of gas makes the system one that is not symmetric. During a search its temperatures are given. Where a
+ * search would end they are found anew, with the radiation that now arrives, until they no longer change. */
 #include "heat/solution.h"
 #include "patches/pencils.h"
 #include "heat/sweep.h"
@@ -200,8 +200,7 @@ static void warm_joined(fibrad_heat *heat) {
     if (!c->joins) return;
     set_arriving(heat);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        c->missing[b] =
-            fibrad_heat_is_joined(heat, b) ? c->supply[b] - c->stiff[b] * heat->sources.emission[b] : 0;
+        c->missing[b] = fibrad_heat_is_joined(heat, b) ? c->supply[b] - c->stiff[b] * heat->sources.emission[b] : 0;
     fibrad_contact_gains(c, c->temperature, c->missing);
     fibrad_contact_find(c, BALANCED_ROUGHLY);
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -726,9 +725,10 @@ static bool replaces_gas(fibrad_heat *heat) {
         least = fibrad_min(least, gas[k]), most = fibrad_max(most, gas[k]);
     }
     for (uint32_t b = 0; b < heat->bodies; b++)
-        if (c->film[b] > 0)
-            least = fibrad_min(least, c->temperature[b]), most = fibrad_max(most, c->temperature[b]);
-    const double rough = change > GAS_SETTLED * (most - least) ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change / (most - least)) : 0;
+        if (c->film[b] > 0) least = fibrad_min(least, c->temperature[b]), most = fibrad_max(most, c->temperature[b]);
+    const double rough = change > GAS_SETTLED * (most - least)
+                             ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change / (most - least))
+                             : 0;
     heat->sources.first_tolerance = fibrad_max(heat->sources.first_tolerance, rough);
     return rough > 0;
 }

@@ -450,8 +450,9 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
         found = found || heat->sources.storage[b] >= 0;
     }
     fibrad_heat_find_unevenness(heat, -1);
-    heat->sources.first_tolerance =
-        (heat->sources.conducts || s->stream != NULL) && found && !heat->solution.warm ? FIBRAD_HEAT_FIRST_TOLERANCE : 0;
+    heat->sources.first_tolerance = (heat->sources.conducts || s->stream != NULL) && found && !heat->solution.warm
+                                        ? FIBRAD_HEAT_FIRST_TOLERANCE
+                                        : 0;
 }
 
 /* Lets the films of spheres end in the gas of a stream. */
