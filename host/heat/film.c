@@ -43,6 +43,8 @@ bool film_given(const struct heat *h) {
 int film_check(struct heat *h) {
     struct film_options *options = &h->film;
     const double zero = h->given.zero;
+    const int status = stream_check(options);
+    if (status) return status;
     if (options->coefficient.given && !options->gas.given)
         return message(STATUS_USAGE, "--convection needs --gas-temperature");
     if (options->gas.given && !film_given(h))
@@ -51,8 +53,6 @@ int film_check(struct heat *h) {
         return message(STATUS_USAGE, "--wall: gas needs convection");
     if (options->gas.value < -zero)
         return message(STATUS_USAGE, "--gas-temperature: %g is below absolute zero", options->gas.value);
-    const int status = stream_check(options);
-    if (status) return status;
     bed_options_quantity(&h->options, &options->coefficient, "W/(m2 K)");
     bed_options_quantity(&h->options, &options->gas, temperature_unit(zero));
     if (!options->gas_table) return STATUS_OK;
