@@ -428,6 +428,31 @@ TEST(beside_a_conductor) {
     assert_near(s.conducted[2], -s.conducted[1], 1e-9);
 }
 
+/* A clump that reflects all, in two slices of a stream: linear balances. */
+TEST(in_a_stream) {
+    struct lumps l = dumbbell(1, 0);
+    OWNED_MADE *made = NULL;
+    const fibrad_spheres spheres = spheres_of_lumps(&l);
+    struct solved s = {.result = {.power = s.power, .temperature = s.t, .convected = s.convected}};
+    fibrad_heat_sources sources = sources_of_lumps(&l);
+    const uint32_t slice[] = {1, 0};
+    const double at = 300, capacity = 7, film[] = {3, 5}, power = 2000;
+    double gas[2 * FIBRAD_STREAM_ROWS] = {0};
+    const fibrad_stream stream = {
+        .slice = slice, .at = &at, .capacity = &capacity, .slices = 2, .points = 1, .inlet = 350, .gas = gas};
+    sources.stream = &stream, sources.film = film, sources.gas = NULL;
+    set_clump(&l, 7, NAN, power);
+    assert_ok(made_with(&made, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_solve(made, &sources, NULL, &s.result));
+    /* T - T_gas falls by 1 + film/capacity from slice to slice; all heat leaves with the gas */
+    const double first = 1 / (1 + film[1] / capacity), second = first / (1 + film[0] / capacity);
+    const double over = power / (film[1] * first + film[0] * second);
+    for (int i = 0; i < 2; i++) assert_near(s.t[i], 350 + over, 1e-9);
+    assert_near(gas[1], 350 + power / capacity, 1e-9);
+    assert_near(s.convected[0], -film[0] * over * second, 1e-9);
+    assert_near(s.convected[1], -film[1] * over * first, 1e-9);
+}
+
 /* A sphere that lies within a clump has no surface, and changes nothing. */
 TEST(covered) {
     struct lumps l = dumbbell(1, .5);

@@ -33,6 +33,7 @@ struct stepper {
     fibrad_span *span;
     double tolerance;
     fibrad_heat_sources sources; /* of the linear problem of a stage */
+    fibrad_stream stream;        /* of the sources */
     fibrad_heat_result result;
     double *stage_walls[2], to_surroundings[2],
         to_gas[2]; /* powers of walls [walls], surroundings, gas in each stage */
@@ -54,6 +55,7 @@ static void set_outside(struct stepper *m, double time) {
         m->t->gas[i] = share_between(m->given->gas[i], span->gas[i], share);
     for (uint32_t b = 0; span->wall_gas && b < m->bed->facts.walls; ++b)
         m->t->wall_gas[b] = share_between(m->given->wall_gas[b], span->wall_gas[b], share);
+    if (span->inlet) m->stream.inlet = share_between(m->given->stream->inlet, *span->inlet, share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
@@ -231,7 +233,8 @@ static double first_step(const struct stepper *m) {
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) hottest = larger_of(hottest, t->now[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double film = m->given->film ? m->given->film[i] * (m->given->gas[i] - t->now[i]) : 0;
+        const double gas = m->given->stream ? m->given->stream->inlet : m->given->film ? m->given->gas[i] : 0;
+        const double film = m->given->film ? m->given->film[i] * (gas - t->now[i]) : 0;
         const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i)) + fabs(film);
         if (rate > 0) step = smaller_of(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
@@ -309,7 +312,9 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
     if (s->contacts > 0 && !(s->contact_first && s->contact_second && s->conductance)) return FIBRAD_E_ARGUMENT;
     for (uint32_t k = 0; k < s->contacts; ++k)
         if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
-    return (span->gas && !s->gas) || (span->wall_gas && !s->wall_gas) ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
+    if (s->film && !s->gas && !s->stream) return FIBRAD_E_ARGUMENT;
+    return (span->gas && !s->gas) || (span->wall_gas && !s->wall_gas) || (span->inlet && !s->stream) ? FIBRAD_E_ARGUMENT
+                                                                                                     : FIBRAD_OK;
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
@@ -358,6 +363,7 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     m.sources.wall_temperature = t->wall_stage;
     if (span->gas) m.sources.gas = t->gas;
     if (span->wall_gas) m.sources.wall_gas = t->wall_gas;
+    if (sources->stream) m.stream = *sources->stream, m.sources.stream = &m.stream;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     memcpy(t->now, span->temperature, n * sizeof *t->now);
     t->by_factors = factors_suffice(bed, sources, span) &&

@@ -52,6 +52,7 @@ static const char why_text[][74] = {
     [FIBRAD_WHY_CLUMP_HEAT] = "members of its clump have different temperatures",
     [FIBRAD_WHY_CLUMP_SOLID] = "it is a member of a clump and has a finite conductivity",
     [FIBRAD_WHY_CLUMP_LIGHT] = "light on clumps is not computed",
+    [FIBRAD_WHY_STREAM] = "the stream has no such slice, or its inlet or capacities are out of range",
     [FIBRAD_WHY_ALONE] = "nothing that it touches radiates or has a temperature",
     [FIBRAD_WHY_CAPACITY] = "the heat capacity is not above 0 or is out of range",
     [FIBRAD_WHY_LIGHT] = "a number of the light is out of range, or its direction is zero",
