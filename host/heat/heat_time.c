@@ -198,7 +198,8 @@ static int make_stores(struct time_run *m) {
     for (uint32_t i = 0; i < n; ++i) {
         m->store_of[i] = each ? i : (uint32_t)quantity_item(&o->capacity, m->heat->bed, i);
         fibrad_store *store = &m->store[m->store_of[i]];
-        m->melted[i] = NAN;
+        const double low = store->melting - o->width / 2, above = m->span.temperature[i] - low;
+        m->melted[i] = o->width > 0 ? fmin(fmax(above / o->width, 0), 1) : above > 0;
         if (store->rows == 0 && m->specific[i] < INFINITY)
             store->rows = 1, store->temperature = &everywhere, store->capacity = &m->specific[i];
     }

@@ -20,7 +20,7 @@ bool fibrad_store_valid(const fibrad_store *store) {
 
 /* Adds a place at which a section begins. *row: the first row of the table that is not below it. */
 static void add_section(fibrad_sections *p, const fibrad_store *store, uint32_t *row, double begin, double melted) {
-    fibrad_section *now = &p->section[p->n], *last = now - 1;
+    fibrad_section *now = &p->section[p->n], *last = p->n > 0 ? now - 1 : now;
     const double *t = store->temperature, *c = store->capacity;
     while (*row < store->rows && t[*row] < begin) ++*row;
     *now = (fibrad_section){.begin = begin, .melted = melted, .capacity = 1};
