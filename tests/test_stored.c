@@ -323,7 +323,7 @@ TEST(pairs) {
     assert_near(40 * (value_of("wall_cylinder_K") - 300), value_of("wall_cylinder_J") + 3000, 1e-5);
     ck_assert_double_lt(value_of("held_J"), 0);
     SUCCEED(PILE, "--heat-capacity", "1:800,2:inf", "--temperature", "900", "--until", "30", "--irradiate",
-            "0,0,-1:1e5", "--wall",
+            "0,0,-1:1e6", "--wall",
             "zmin:at=0:capacity=9:temperature=300,zmax:open,xmin:at=-.021:open,xmax:at=.021:open,"
             "ymin:at=-.021:open,ymax:at=.021:open");
     expect_closed();

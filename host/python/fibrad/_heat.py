@@ -140,10 +140,16 @@ class Store:
 
     Attributes
     ----------
-    temperature, capacity
-        [K] and [J/(kg K)] rows of a table, linear in between. No temperature may leave it, unless it has one row.
-    melting, latent, width
-        [K], [J/kg], [K] The material melts at this temperature with this latent heat, or evenly over a width about it.
+    temperature
+        [K] rows of a table, ascending. No temperature may leave them, unless there is one row.
+    capacity
+        [J/(kg K)] the heat capacity at these, linear in between.
+    melting
+        [K] melting point, or the middle of the range in which the material melts.
+    latent
+        [J/kg] latent heat. 0: nothing melts.
+    width
+        [K] width of this range. 0: the material melts at one temperature.
     """
 
     temperature: ArrayLike = (1.0,)
