@@ -157,6 +157,13 @@ TEST(table_at_constant_power) {
     ck_assert_int_eq(sscanf(read_file(q), "time_s,i,T_K%*[^\n]\n300,0,%lf%*[^\n]\n300,1,%lf", found, found + 1), 2);
     assert_near(found[0], expected, 1e-12);
     assert_near(found[1], 350 + 40 * 300 / (.02 * 800), 1e-12);
+    one = write_file("two.csv", "x,y,z,r,c\n0,0,0,0.01,inf\n1,0,0,0.01,800\n");
+    SUCCEED("heat", one, "--length-unit", "m", "--emissivity", "0", "--temperature", "350", "--ambient", "300",
+            "--power", "40", "--until", "300", "--heat-capacity", "c", "--density",
+            formatted("%.17g", .02 / (4. / 3 * PI * R * R * R)), "-o", q);
+    ck_assert_int_eq(sscanf(read_file(q), "time_s,i,T_K%*[^\n]\n300,0,%lf%*[^\n]\n300,1,%lf", found, found + 1), 2);
+    ck_assert(found[0] == 350 && value_of("held_J") == 12000);
+    assert_near(found[1], 350 + 40 * 300 / (.02 * 800), 1e-12);
 }
 
 static int cool(double time, const double t[], double slope[], void *lump) {
@@ -352,6 +359,10 @@ TEST(at_fault) {
         FAIL_WITH(3, IN_TIME, "--heat-capacity", formatted("@%s", file));
         expect_message(file, bad[k].reason);
     }
+    FAIL_WITH(3, "heat", write_file("nan.csv", "x,y,z,r,c\n0,0,0,0.01,nan\n"), "--length-unit", "m", "--emissivity",
+              "1", "--ambient", "300", "--density", "2500", "--temperature", "900", "--until", "1", "--heat-capacity",
+              "c");
+    expect_message("", "the heat capacity is nan");
     static const char *const melting[][2] = {{"1000,-5", "the latent heat, -5 J/kg, is not above 0"},
                                              {"1000", "'1000' is not T,L or T,L,WIDTH"},
                                              {"1000,1,-1", "the width, -1 K, is below 0"},

@@ -62,7 +62,9 @@ int time_check(struct time_options *time, double zero, struct bed_options *bed) 
             return message(STATUS_USAGE, "--times: more than %d times", TIMES_MAX);
         time->times = NULL;
     }
+    time->capacity.some = true; /* infinite capacities may be in a column */
     bed_options_quantity(bed, &time->capacity, "J/(kg K)");
+    time->capacity.some = false;
     bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
 }
