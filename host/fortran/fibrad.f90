@@ -253,7 +253,7 @@ module fibrad
 
     type, bind(C) :: fibrad_contact_rule
         integer(c_int) :: spots = 0
-        real(c_double) :: scale = 0, gas_reach = 0, gas_jump = 0, gas_least = 0
+        real(c_double) :: scale = 0, gas_reach = 0, gas_jump = 0, gas_least = 0, wall = 0
         integer(c_int) :: gas_alone = 0
     end type fibrad_contact_rule
 

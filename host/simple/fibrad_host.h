@@ -405,6 +405,7 @@ typedef struct fibrad_contact_rule {
     double gas_reach; /* thickness of the gas that conducts about the smaller sphere, in its radii, 0 to 1; 0: no gas */
     double gas_jump;  /* L, is added to gaps, since narrow gaps conduct less; 0 or more */
     double gas_least; /* L, least gap that counts, above 0; 0: 1e-7 of the smaller radius */
+    double wall;      /* conductivity of walls at spots, in the unit of that of spheres; 0: infinite */
     int gas_alone;    /* 1: lines lead through gas alone, not through solid; for spheres that conduct themselves */
 } fibrad_contact_rule;
 
@@ -425,16 +426,13 @@ typedef struct fibrad_contact_list {
  *   Cost     0.5 microseconds for each sphere within reach */
 int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list);
 
-/* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and 4 k_i a to a
- * wall. Gas conducts along lines parallel to the line of centres, out to where the surface of one sphere leaves the gas
- * about the other one.
- *   Input    solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0
- *            gas[n]: conductivities of the gas at each contact; NULL: no gas conducts
- *            Both are in the unit of fibrad_heat_sources.conductivity.
- *   Output   conductance[n]: in the unit of fibrad_heat_sources.conductance
- *   Errors   _ARGUMENT
- *   Cost     1 microsecond for each contact with gas
- *   Source   docs/methods.md section 28 */
+/* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and to a wall of
+ * the conductivity k_j, too. To a wall of infinite conductivity it conducts 4 k_i a. Gas conducts along lines parallel
+ * to the line of centres, out to where the surface of one sphere leaves the gas about the other one. Input
+ * solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0 gas[n]: conductivities of
+ * the gas at each contact; NULL: no gas conducts Both are in the unit of fibrad_heat_sources.conductivity. Output
+ * conductance[n]: in the unit of fibrad_heat_sources.conductance Errors   _ARGUMENT Cost     1 microsecond for each
+ * contact with gas Source   docs/methods.md section 28 */
 int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
                             const double *gas, double *conductance);
 

@@ -394,6 +394,25 @@ done
 run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01"
 near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
 
+# ---- gas ----------------------------------------------------------------------------------------------------------------
+# explicit steps of heat: each leaves 1 - h A t/C of the difference
+awk -v OFMT=%.17g 'BEGIN {
+    for (i = 1; i <= 2; i++) print i, 300 + 50*i + (i == 1 ? 550 : 200)*(1 - 25*3/(i == 1 ? .5 : .3)*20/(2500*800))^1000 }' >"$work/cooled"
+for film in "25 d_gas" "d_h v_gas" "v_h type 350 400"; do
+    for np in 1 2; do
+        run $np gas$np film.lmp film "$film"
+        near "$work/cooled" "$work/gas$np.out" 1e-9 "convection $film, np $np, by explicit steps"
+    done
+    cmp "$work/gas1.out" "$work/gas2.out"
+    verdict "convection $film: the same bits" $?
+    awk 'NF == 4 && /^ *[0-9]/ && $1 % 100 == 0 { n++; off = $2 + $3 + $4; if (off*off > 1e-26*$2*$2 || $2 == 0) bad = 1 }
+        END { exit !(n > 20 && !bad) }' "$work/gas2.log"
+    verdict "convection $film: what the gas loses is what balls gain" $?
+done
+run 2 gas_floor frozen.lmp "${whole[@]}" floor "zmin temperature 1000 emissivity 0.9 at 0 capacity 3e5" strict "no convection 5 400"
+awk 'NF == 5 && /^ *[0-9]/ { n++ } END { exit n < 5 }' "$work/gas_floor.log"
+verdict "convection beside radiation" $?
+
 # beside radiation: what contacts bring is what fibrad heat says
 "$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin:at=0:temperature=1000 \
     --contacts lens --contact-conductivity 1:4,2:12 --gas-conductivity .03 --directions 50 --length-unit m -o "$work/touch.csv" >/dev/null 2>&1
@@ -637,8 +656,12 @@ fails "must be above 0, not nan" "a conductivity that is no number" strict "no s
 fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e10"
 run 2 parts frozen.lmp "${whole[@]}" heat 1 strict "no contacts 1e6" && grep -q "step 0: contacts conduct in [0-9]* parts" "$work/parts.log"
 verdict "contacts that conduct in parts of a step of heat" $?
+fails "particle 7: convection -3 to gas of 400 K" "a heat transfer coefficient below 0" \
+    also "variable h atom (id==7)*-3" strict "no convection v_h 400"
+fails "the time step must be at most" "convection for which the time step is too long" heat 1 strict "no convection 1e7 400"
+fails "there is no variable .h. of equal or atom style" "a coefficient that is not there" strict "no convection v_h 400"
+fails "convection. needs temperatures" "convection without temperatures" heat 0 strict "no convection 5 400"
 fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
-fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl temperature 1000 emissivity 0.9" strict "no contacts 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
 fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"
 fails "moved. needs temperatures" "a distance moved without temperatures" heat 0 strict "no moved 0.1"

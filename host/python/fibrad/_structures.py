@@ -188,7 +188,7 @@ class Span(Structure):
 
 class ContactRule(Structure):
     _fields_ = [("spots", c_int), ("scale", c_double), ("gas_reach", c_double), ("gas_jump", c_double),
-                ("gas_least", c_double), ("gas_alone", c_int)]
+                ("gas_least", c_double), ("wall", c_double), ("gas_alone", c_int)]
 
 
 class ContactList(Structure):
