@@ -92,6 +92,22 @@ uint32_t fibrad_heat_parts(const fibrad_heat *heat);
  *   Cost     1 microsecond per direction of 64 points */
 int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
+/* Gas that flows past the spheres. It goes through slices in turn, and each slice has one temperature:
+ *
+ *     heat content that leaves - heat content that enters = sum over the slice of film (T - T_gas)
+ *
+ * The heat content is the integral of `capacity`, which is linear between its points and constant beyond them. */
+typedef struct fibrad_stream {
+    const uint32_t *slice;  /* [spheres], below `slices`; 0: the slice that the gas enters first */
+    const double *at;       /* K, [points], ascending */
+    const double *capacity; /* sigma K^3 L^2, [points], above 0: mass flow times specific heat, at these temperatures */
+    uint32_t slices, points;
+    double inlet; /* K, of the gas that enters */
+    double *gas;  /* K, [FIBRAD_STREAM_ROWS slices]: the first row has first guesses, not above 0: the inlet's; out:
+                   * temperatures of the slices; the other rows are memory */
+} fibrad_stream;
+#define FIBRAD_STREAM_ROWS 4
+
 /* What radiates. Begin with fibrad_heat_sources_init, and set `surroundings`.
  *
  *   a sphere with             temperature  power     storage, reference
@@ -130,7 +146,8 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
  *
  * A film exchanges heat with gas of a given temperature: film times the difference of the temperatures of gas and
  * surface. It is the heat transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact
- * does: also on spheres of emissivity 0. On a sphere with a finite conductivity it acts point by point.
+ * does: also on spheres of emissivity 0. On a sphere with a finite conductivity it acts point by point. With a stream
+ * the films of spheres end in the gas of their slices, whose temperatures are found. `gas` is then not used.
  *
  * With `contact_places` the contacts of a sphere with a finite conductivity act where the line to the other centre, or
  * the normal of the plane or cylinder, leaves the sphere. Contacts with meshes act on the mean of the sphere's
@@ -172,6 +189,7 @@ typedef struct fibrad_heat_sources {
     const double *film;                 /* sigma K^3 L^2, [spheres], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
     const double *gas;                  /* K, [spheres], temperature of the gas at a film; NULL without `film` */
     const double *wall_film, *wall_gas; /* the same, [walls] */
+    const fibrad_stream *stream;        /* gas that flows past the spheres; NULL: none */
     double *contact_places; /* [5 contacts + fibrad_heat_patches], memory: contacts act at their places; or NULL */
 } fibrad_heat_sources;
 

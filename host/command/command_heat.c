@@ -47,6 +47,7 @@ static const struct option heat_table[] = {
      TO_FLAG(struct heat, face.wanted)},
     OPTIONS_CONTACTS_RARE(struct heat),
     {OPTION_MELTING(struct heat)},
+    OPTIONS_STREAM(struct heat),
     {OPTION_PROFILE(struct heat)},
     {OPTION_STEP(struct heat)},
     {0, "patches", "P", "patches of each sphere, 24, 96 or 384 [" TEXT_OF(FIBRAD_HEAT_PATCHES_DEFAULT) "]",
@@ -174,5 +175,6 @@ int command_heat(int argc, char **argv) {
     curve_free(&heat.contacts.gas_curve);
     curve_free(&heat.given.ambient_curve);
     curve_free(&heat.film.gas_curve);
+    curve_free(&heat.film.capacity_curve);
     return ended;
 }

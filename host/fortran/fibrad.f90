@@ -28,6 +28,13 @@ module fibrad
     real(c_double), parameter :: fibrad_stefan_boltzmann = 5.670374419e-8_c_double
 
     ! ---- of C, by `make structures`
+    type, bind(C) :: fibrad_stream
+        type(c_ptr) :: slice = c_null_ptr, at = c_null_ptr, capacity = c_null_ptr
+        integer(c_int32_t) :: slices = 0, points = 0
+        real(c_double) :: inlet = 0
+        type(c_ptr) :: gas = c_null_ptr
+    end type fibrad_stream
+
     type, bind(C) :: fibrad_heat_sources
         type(c_ptr) :: temperature = c_null_ptr, emissivity = c_null_ptr, power = c_null_ptr, storage = c_null_ptr, &
             reference = c_null_ptr, wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, &
@@ -38,7 +45,7 @@ module fibrad
             absorbed = c_null_ptr, contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0
         type(c_ptr) :: film = c_null_ptr, gas = c_null_ptr, wall_film = c_null_ptr, wall_gas = c_null_ptr, &
-            contact_places = c_null_ptr
+            stream = c_null_ptr, contact_places = c_null_ptr
     end type fibrad_heat_sources
 
     type, bind(C) :: fibrad_plane
@@ -238,7 +245,8 @@ module fibrad
         type(c_ptr) :: store = c_null_ptr, store_of = c_null_ptr
         integer(c_int32_t) :: stores = 0
         type(c_ptr) :: melted = c_null_ptr, wall_capacity = c_null_ptr, wall_end = c_null_ptr, &
-            wall_temperature = c_null_ptr, surroundings = c_null_ptr, gas = c_null_ptr, wall_gas = c_null_ptr
+            wall_temperature = c_null_ptr, surroundings = c_null_ptr, gas = c_null_ptr, wall_gas = c_null_ptr, &
+            inlet = c_null_ptr
         real(c_double) :: step = 0, tolerance = 0
         type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0

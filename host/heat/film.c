@@ -11,8 +11,21 @@
 
 #define COEFFICIENT_MAX 1e12 /* [W/(m2 K)] */
 
-int convection_option(const char *text, void *coefficient) {
-    return quantity_option("--convection", text, 0, COEFFICIENT_MAX, coefficient);
+int convection_option(const char *text, void *film_options) {
+    struct film_options *options = film_options;
+    const bool wakao = strncmp(text, "wakao:", 6) == 0;
+    double value[2];
+    int count = 0;
+    if (!wakao && strncmp(text, "gunn:", 5) != 0)
+        return quantity_option("--convection", text, 0, COEFFICIENT_MAX, &options->coefficient);
+    const int status = options_numbers("--convection", strchr(text, ':') + 1, 2, value, &count);
+    if (status) return status;
+    if (count != 2 || !(value[0] > 0 && value[0] <= COEFFICIENT_MAX && value[1] > 0 && value[1] <= COEFFICIENT_MAX))
+        return message(STATUS_USAGE, "--convection: %.60s is not %s:K,MU, with K [W/(m K)] and MU [Pa s] above 0", text,
+                       wakao ? "wakao" : "gunn");
+    options->correlation = wakao ? WAKAO : GUNN, options->coefficient.given = true;
+    options->conductivity = value[0], options->viscosity = value[1];
+    return STATUS_OK;
 }
 
 int gas_temperature_option(const char *text, void *film_options) { /* --temperature-unit may follow */
@@ -30,6 +43,8 @@ bool film_given(const struct heat *h) {
 int film_check(struct heat *h) {
     struct film_options *options = &h->film;
     const double zero = h->given.zero;
+    const int status = stream_check(options);
+    if (status) return status;
     if (options->coefficient.given && !options->gas.given)
         return message(STATUS_USAGE, "--convection needs --gas-temperature");
     if (options->gas.given && !film_given(h))
@@ -62,7 +77,7 @@ static int find_wall_film(struct heat *h, uint32_t k) {
                        "what it gains",
                        name);
     films->wall_follows[k] = isnan(said->gas);
-    if (films->wall_follows[k] && (!gas->given || gas->column || gas->types))
+    if (films->wall_follows[k] && (!gas->given || gas->column || gas->types || h->film.flux > 0))
         return message(STATUS_USAGE,
                        "--wall: %s has convection and needs the temperature of its gas, %s:gas=300 for "
                        "example",
@@ -84,6 +99,7 @@ static int find_sphere_films(struct heat *h) {
     if (!status)
         status = quantity_values(&h->film.gas, bed, h->options.name, "temperature of the gas in kelvins", h->given.zero,
                                  0, TEMPERATURE_MAX, &films->gas);
+    if (!status && h->film.correlation) status = stream_coefficients(h, films->film);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
         films->film[i] *= 4 * M_PI * gsl_pow_2(bed->r[i] * bed->metres) * films->per_watt;
     return status;
@@ -96,7 +112,8 @@ int film_begin(struct heat *h, double per_watt) {
     films->convected = calloc(2 * (size_t)h->bed->n + 1, sizeof *films->convected);
     if (!films->convected) return message_memory();
     films->end = films->convected + h->bed->n;
-    int status = find_sphere_films(h);
+    int status = stream_begin(h);
+    if (!status) status = find_sphere_films(h);
     for (uint32_t k = 0; k < h->walls.count && !status; ++k)
         if (h->walls.said[k].given & WALL_CONVECTION) status = find_wall_film(h, k);
     if (status) return status;
@@ -113,6 +130,8 @@ void film_free(struct film_state *state) {
     free(state->film);
     free(state->gas);
     free(state->convected);
+    free((uint32_t *)(uintptr_t)state->stream.slice);
+    free(state->memory);
     *state = (struct film_state){.any = false};
 }
 
@@ -122,6 +141,7 @@ void film_at(struct heat *h, double now, double end) {
     if (!films->any || curve->n == 0) return;
     const double t[2] = {curve_at(curve, now) + h->given.zero, curve_at(curve, end) + h->given.zero};
     for (uint32_t i = 0; i < h->bed->n && films->film; ++i) films->gas[i] = t[0], films->end[i] = t[1];
+    films->stream.inlet = t[0], films->inlet_end = t[1];
     for (uint32_t k = 0; k < h->walls.count; ++k)
         if (films->wall_follows[k]) films->wall_gas[k] = t[0], films->wall_end[k] = t[1];
 }
@@ -138,7 +158,8 @@ void film_report(struct heat *h) {
     const struct film_state *films = &h->films;
     struct report *report = &h->options.report;
     if (!films->any) return;
-    quantity_report(&h->film.coefficient, "convection_W_m2K", report);
+    if (!h->film.correlation) quantity_report(&h->film.coefficient, "convection_W_m2K", report);
+    stream_report(h);
     report_measured(report, "gas_W", h->result.gas_power, h->result.gas_error);
     report_value(report, "gas_error_W", h->result.gas_error, 2);
     for (uint32_t k = 0; k < h->walls.count; ++k)

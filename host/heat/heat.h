@@ -115,30 +115,54 @@ int light_check(struct light_options *options, struct bed_options *bed, const st
 /* Rows of a table of options, for a request with a field `film`: with braces, and without. */
 #define OPTIONS_FILM(request)                                                                                          \
     {0, "convection", "H",                                                                                             \
-     "heat transfer coefficient of all spheres to the gas [W/(m2 K)]; a number, TYPE:H,..., or a column of the file "  \
-     "[no gas]",                                                                                                       \
-     TO_FUNCTION(convection_option, request, film.coefficient)},                                                       \
+     "heat transfer coefficient of all spheres to the gas [W/(m2 K)]; a number, TYPE:H,..., a column of the file, or " \
+     "a correlation, wakao:K,MU or gunn:K,MU [no gas]",                                                                \
+     TO_FUNCTION(convection_option, request, film)},                                                                   \
     {                                                                                                                  \
         0, "gas-temperature", "T",                                                                                     \
             "temperature of this gas; a number, TYPE:T,..., a column of the file, or with --until @TABLE",             \
             TO_FUNCTION(gas_temperature_option, request, film)                                                         \
+    }
+#define OPTIONS_STREAM(request)                                                                                        \
+    {0, "gas-flow", "AXIS:G",                                                                                          \
+     "gas flows through the bed along x, y, z, -x, -y or -z, G [kg/(m2 s)] over the empty cross-section; "             \
+     "--gas-temperature is that of its inlet [no flow]",                                                               \
+     TO_FUNCTION(gas_flow_option, request, film)},                                                                     \
+    {                                                                                                                  \
+        0, "gas-heat-capacity", "C",                                                                                   \
+            "specific heat of this gas [J/(kg K)]; a number, or @TABLE of temperatures [K] and specific heats",        \
+            TO_FUNCTION(gas_capacity_option, request, film)                                                            \
     }
 
 /* A paragraph of --help. */
 #define FILM_MORE                                                                                                      \
     "--convection H: A sphere gains H times its surface times (gas temperature - T_K). Walls have :convection=H\n"     \
     "and :gas=T; without :gas they have the gas of --gas-temperature, if that is one number or a table. Outputs\n"     \
-    "have q_convection_W, which is a part of q_W, and a line for the gas.\n"
+    "have q_convection_W, which is a part of q_W, and a line for the gas.\n"                                           \
+    "--gas-flow: The gas goes through slices of one mean diameter. Each slice has one temperature, which is found.\n"  \
+    "The line of the gas has the temperature of the outlet. The cross-section lies between the walls or periods\n"     \
+    "beside the flow, else about the spheres. --convection wakao:K,MU takes the coefficient of Wakao and Kaguei,\n"    \
+    "gunn:K,MU that of Gunn, for gas of conductivity K [W/(m K)] and viscosity MU [Pa s].\n"
 
-/* Arguments of the options. Begin with zeroes; free gas_curve and tables of quantities. */
+/* Correlations of heat transfer coefficients: stream.c. */
+enum correlation { NO_CORRELATION, WAKAO, GUNN };
+
+/* Arguments of the options. Begin with zeroes; free curves and tables of quantities. */
 struct film_options {
-    struct quantity coefficient; /* [W/(m2 K)] */
-    struct quantity gas;         /* in the unit of temperatures */
-    struct curve gas_curve;      /* over time [s]; n = 0: none */
-    const char *gas_table;       /* its path; NULL: none */
+    struct quantity coefficient;    /* [W/(m2 K)] */
+    struct quantity gas;            /* in the unit of temperatures */
+    struct curve gas_curve;         /* over time [s]; n = 0: none */
+    const char *gas_table;          /* its path; NULL: none */
+    enum correlation correlation;   /* in place of the coefficient */
+    double conductivity, viscosity; /* of the gas, for it [W/(m K)], [Pa s] */
+    double flux;                    /* [kg/(m2 s)] 0: the gas does not flow */
+    int axis;                       /* 0 to 2, along which it flows */
+    bool down;                      /* to lower coordinates */
+    double capacity;                /* [J/(kg K)] 0: not given */
+    struct curve capacity_curve;    /* the same over temperature; n = 0: none */
 };
 
-option_take convection_option, gas_temperature_option;
+option_take convection_option, gas_temperature_option, gas_flow_option, gas_capacity_option;
 
 /* Films of one bed. */
 struct film_state {
@@ -148,6 +172,9 @@ struct film_state {
     double wall_film[WALLS_MAX], wall_gas[WALLS_MAX], wall_end[WALLS_MAX], wall[WALLS_MAX];
     bool wall_follows[WALLS_MAX]; /* its gas is that of the table */
     double per_watt;              /* film over W/K */
+    fibrad_stream stream;         /* gas that flows; slices 0: it does not */
+    double *memory;               /* of its arrays of numbers */
+    double section, inlet_end;    /* [m2] cross-section; [K] temperature of the inlet at the end of a span of time */
 };
 
 /* ---- a run of `fibrad heat`: what the options say, the bed in hand, its heat problem and the result -------------- */
@@ -374,6 +401,20 @@ void film_at(struct heat *heat, double now, double end);
 /* Scales results to watts, and reports them. */
 void film_scale(struct heat *heat);
 void film_report(struct heat *heat);
+
+/* stream.c: checks the options of gas that flows. Status 0 or STATUS_USAGE. */
+int stream_check(const struct film_options *options);
+
+/* Divides the bed in hand into slices. Status 0, STATUS_USAGE, STATUS_INPUT or STATUS_MEMORY. */
+int stream_begin(struct heat *heat);
+
+/* Coefficients of spheres by the correlation [W/(m2 K)], [spheres]. Status 0 or STATUS_USAGE. */
+int stream_coefficients(const struct heat *heat, double *coefficient);
+
+/* The temperature of gas at the outlet [K]; NaN: it does not flow. */
+double stream_outlet(const struct heat *heat);
+
+void stream_report(struct heat *heat);
 
 /* profile.c: finds the axis of r. Status 0, or STATUS_USAGE if there is none. */
 int profile_begin(struct heat *heat);

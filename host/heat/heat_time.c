@@ -100,7 +100,7 @@ struct time_run {
 };
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
-    struct time_point point = {time, 0, INFINITY, -INFINITY};
+    struct time_point point = {time, 0, INFINITY, -INFINITY, time > 0 ? stream_outlet(m->heat) : NAN};
     for (uint32_t i = 0; i < m->bed.n; ++i) {
         point.mean += temperature[i] / m->bed.n;
         point.least = fmin(point.least, temperature[i]), point.most = fmax(point.most, temperature[i]);
@@ -428,6 +428,7 @@ static void print_summary(struct time_run *m, double seconds) {
     if (mass > 0) report_value(report, "melted", melted / mass, 6);
     if (h->given.ambient) report_value(report, "surroundings_J", m->surroundings_energy, 6);
     if (h->films.any) report_value(report, "gas_J", m->gas_energy, 6);
+    stream_report(h);
     wall_values_report(&h->walls, m->energy, "_J", 6, report);
     light_report(h);
     contacts_report(&h->touching, h->bed, &h->walls, report);
@@ -516,8 +517,9 @@ int heat_in_time(struct heat *h) {
                            .wall_capacity = m.wall_capacity,
                            .context = &m};
     if (h->film.gas_curve.n > 0) {
-        m.span.gas = h->films.film ? h->films.end : NULL;
+        m.span.gas = h->films.film && !h->sources.stream ? h->films.end : NULL;
         m.span.wall_gas = h->films.wall_end;
+        m.span.inlet = h->sources.stream ? &h->films.inlet_end : NULL;
     }
     for (uint32_t i = 0; i < n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;

@@ -129,8 +129,8 @@ static void print_times(FILE *script, const struct time_point *point, size_t poi
     const struct prefixed unit = unit_seconds(point[points - 1].time);
     fputs("$time << END\n", script);
     for (size_t k = 0; k < points; ++k)
-        fprintf(script, "%.9g %.9g %.9g %.9g\n", point[k].time / unit.scale, point[k].mean, point[k].least,
-                point[k].most);
+        fprintf(script, "%.9g %.9g %.9g %.9g %.9g\n", point[k].time / unit.scale, point[k].mean, point[k].least,
+                point[k].most, point[k].outlet);
     fprintf(script,
             "END\n"
             "set xlabel 'time [%s]'; set ylabel 'temperature [K]'; set grid; set key top right\n"
@@ -138,8 +138,10 @@ static void print_times(FILE *script, const struct time_point *point, size_t poi
             "plot $time using 1:3:4 with filledcurves fc '#c8553d' fs transparent solid 0.25 noborder "
             "title 'coldest to hottest', "
             "'' using 1:3 with lines lw 1 lc '#c8553d' notitle, '' using 1:4 with lines lw 1 lc '#c8553d' notitle, "
-            "'' using 1:2 with lines lw 3 lc '#222222' title 'mean'\n",
-            unit.name, point[points - 1].time / unit.scale);
+            "'' using 1:2 with lines lw 3 lc '#222222' title 'mean'%s\n",
+            unit.name, point[points - 1].time / unit.scale,
+            isnan(point[points - 1].outlet) ? ""
+                                            : ", '' using 1:5 with lines lw 3 lc '#2a6f97' title 'gas at the outlet'");
 }
 
 int plot_time(const struct output *output, const char *name, const struct time_point *point, size_t points,

@@ -17,10 +17,11 @@ int plot_heat(const struct output *output, const char *name, const struct conten
 struct time_point {
     double time;              /* [s] */
     double mean, least, most; /* temperatures [K] */
+    double outlet;            /* of the gas that leaves [K]; NaN: there is no stream */
 };
 
-/* Draws mean, least and largest temperature over time, and a slice of the temperatures at the end, those of `what`.
- * Status as plot_heat. */
+/* Draws mean, least and largest temperature and that of the gas at the outlet over time, and a slice of the
+ * temperatures at the end, those of `what`. Status as plot_heat. */
 int plot_time(const struct output *output, const char *name, const struct time_point *point, size_t points,
               const struct contents *what, const struct plot_plane *plane);
 

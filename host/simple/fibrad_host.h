@@ -338,6 +338,7 @@ typedef struct fibrad_span {
     const double *wall_temperature; /* K, [walls], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
+    const double *inlet;          /* K, one number, of the gas of a stream at the end, the same; NULL: constant */
     double step;                  /* s; all steps are equal and at most this long; 0: automatic steps */
     double tolerance;             /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
     double *power;                /* W, [spheres], out: net power at the end; may be NULL */
@@ -374,6 +375,7 @@ typedef struct fibrad_span {
  *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: a wall's is to be found
  *   wall_power, insulated, side_temperature    constant
  *   conductivity, conductance, film, wall_film    constant, or changed by a law; contacts act on means of surfaces
+ *   stream                              its inlet: at the beginning of the span; its gas: out, at the end
  *   sigma, sweeps_max                   as for fibrad_bed_solve
  *   tolerance                           residual of a stage by patches; 0: a tenth of the span's tolerance
  *

@@ -40,6 +40,7 @@ struct stepper {
     fibrad_span *span;
     double tolerance;
     fibrad_heat_sources sources; /* of the linear problem of a stage */
+    fibrad_stream stream;        /* of the sources */
     fibrad_heat_result result;
     double *stage_walls[2], to_surroundings[2], to_gas[2],
         to_held[2];            /* powers of walls [walls], surroundings, gas, held spheres in each stage */
@@ -81,6 +82,7 @@ static void set_outside(struct stepper *m, double time) {
     for (uint32_t b = 0; m->given->wall_gas && b < m->bed->facts.walls; ++b)
         m->t->wall_gas[b] =
             span->wall_gas ? share_between(m->given->wall_gas[b], span->wall_gas[b], share) : m->given->wall_gas[b];
+    if (span->inlet) m->stream.inlet = share_between(m->given->stream->inlet, *span->inlet, share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
 }
@@ -306,7 +308,8 @@ static double first_step(const struct stepper *m) {
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) hottest = larger_of(hottest, t->warmth[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double film = m->given->film ? m->given->film[i] * (m->given->gas[i] - t->warmth[i]) : 0;
+        const double gas = m->given->stream ? m->given->stream->inlet : m->given->film ? m->given->gas[i] : 0;
+        const double film = m->given->film ? m->given->film[i] * (gas - t->warmth[i]) : 0;
         const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i)) + fabs(film);
         if (rate > 0) step = smaller_of(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
@@ -407,8 +410,10 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
     if (s->contacts > 0 && !(s->contact_first && s->contact_second && s->conductance)) return FIBRAD_E_ARGUMENT;
     for (uint32_t k = 0; k < s->contacts; ++k)
         if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
-    return (span->gas && !s->gas) || ((span->wall_gas || s->wall_film) && !s->wall_gas) ? FIBRAD_E_ARGUMENT
-                                                                                        : check_stores(bed, s, span);
+    if (s->film && !s->gas && !s->stream) return FIBRAD_E_ARGUMENT;
+    if ((span->gas && !s->gas) || ((span->wall_gas || s->wall_film) && !s->wall_gas) || (span->inlet && !s->stream))
+        return FIBRAD_E_ARGUMENT;
+    return check_stores(bed, s, span);
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
@@ -501,6 +506,7 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     if (span->gas) m.sources.gas = t->gas;
     if (span->wall_gas) m.sources.wall_gas = t->wall_gas;
     begin_walls(&m);
+    if (sources->stream) m.stream = *sources->stream, m.sources.stream = &m.stream;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     int status = begin_stores(&m, span);
     if (status) return status;

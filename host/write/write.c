@@ -39,7 +39,8 @@ const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_N
     for (int c = 0; c < HEAT_COLUMNS; ++c)
         value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c == HEAT_MELTED ? NAN : 0;
     if (k == what->walls->count) {
-        value[HEAT_TEMPERATURE] = value[HEAT_TEMPERATURE_ERROR] = NAN;
+        const fibrad_stream *stream = what->sources->stream;
+        value[HEAT_TEMPERATURE] = stream ? stream->gas[stream->slices - 1] : NAN, value[HEAT_TEMPERATURE_ERROR] = NAN;
         value[HEAT_POWER] = value[HEAT_PARTS + 2] = r->gas_power, value[HEAT_POWER_ERROR] = r->gas_error;
         return r->convected ? "gas" : NULL;
     }

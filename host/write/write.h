@@ -81,7 +81,8 @@ enum {
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]);
 
 /* The same of wall k, of the surroundings (k = -1) or of the gas of films (k = number of walls), whose insides are NaN.
- * Their light is what leaves at first and in all. Returns the name; NULL: there are no surroundings, or no gas. */
+ * The gas of a stream has the temperature at its outlet. Their light is what leaves at first and in all. Returns the
+ * name; NULL: there are no surroundings, or no gas. */
 const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_NAME], double value[HEAT_COLUMNS]);
 
 /* The value of sphere i. */

@@ -154,8 +154,55 @@ static void solve_network(fibrad_contacts *c, bool kelvins) {
     for (uint32_t k = 0; k < WARM_MAX && slope > enough; k++) slope = step_network(c, kelvins, slope);
 }
 
+static double product_on_free(const fibrad_contacts *c, const double *a, const double *b) {
+    double sum = 0;
+    for (uint32_t k = 0; k < c->nodes; k++)
+        if (c->kind[k] == FIBRAD_CONTACT_FREE) sum += a[k] * b[k];
+    return sum;
+}
+
+/* contacts->product = the matrix of the network with gas that follows, times x, over the diagonal. */
+static void multiply_streaming(fibrad_contacts *c, const double *x) {
+    multiply_contacts(c, true, x);
+    fibrad_stream_respond(c, x, c->product);
+    for (uint32_t b = 0; b < c->nodes; b++)
+        if (c->kind[b] == FIBRAD_CONTACT_FREE) c->product[b] /= c->diagonal[b];
+}
+
+/* Solves the linear system of the network with gas that follows for contacts->warming, by stabilised biconjugate
+ * gradients: H. A. van der Vorst, SIAM J. Sci. Stat. Comput. 13 (1992) 631. Overwrites contacts->load. */
+static void solve_streaming(fibrad_contacts *c) {
+    double *r = c->load, *p = c->search, *v = c->sent, last = 1, length = 1, share = 1;
+    find_diagonal(c, true);
+    for (uint32_t b = 0; b < c->nodes; b++) {
+        c->warming[b] = p[b] = v[b] = 0;
+        r[b] = c->shadow[b] = c->kind[b] == FIBRAD_CONTACT_FREE ? r[b] / c->diagonal[b] : 0;
+    }
+    const double enough = WARM_TOLERANCE * WARM_TOLERANCE * product_on_free(c, r, r);
+    for (uint32_t k = 0; k < WARM_MAX && product_on_free(c, r, r) > enough; k++) {
+        const double now = product_on_free(c, c->shadow, r), keep = now / last * (length / share);
+        for (uint32_t b = 0; b < c->nodes; b++)
+            p[b] = c->kind[b] == FIBRAD_CONTACT_FREE ? r[b] + keep * (p[b] - share * v[b]) : 0;
+        multiply_streaming(c, p);
+        fibrad_copy(v, c->product, c->nodes * sizeof *v);
+        length = now / product_on_free(c, c->shadow, v), last = now;
+        if (!(fibrad_abs(length) > 0 && length == length)) return;
+        for (uint32_t b = 0; b < c->nodes; b++) r[b] = c->kind[b] == FIBRAD_CONTACT_FREE ? r[b] - length * v[b] : 0;
+        multiply_streaming(c, r);
+        const double square = product_on_free(c, c->product, c->product);
+        share = square > 0 ? product_on_free(c, c->product, r) / square : 0;
+        for (uint32_t b = 0; b < c->nodes; b++) {
+            if (c->kind[b] != FIBRAD_CONTACT_FREE) continue;
+            c->warming[b] += length * p[b] + share * r[b];
+            r[b] -= share * c->product[b];
+        }
+        if (!(share > 0 || share < 0)) return;
+    }
+}
+
 /* contacts->load = what is missing in the balance of each free node at contacts->temperature. */
 static void find_missing(fibrad_contacts *c) {
+    if (c->streaming) fibrad_stream_find(c);
     fibrad_zero(c->load, c->nodes * sizeof *c->load);
     fibrad_contact_gains(c, c->temperature, c->load);
     for (uint32_t b = 0; b < c->nodes; b++)
@@ -193,13 +240,6 @@ static void shorten_steps(fibrad_contacts *c) {
     }
 }
 
-static double product_on_free(const fibrad_contacts *c, const double *a, const double *b) {
-    double sum = 0;
-    for (uint32_t k = 0; k < c->nodes; k++)
-        if (c->kind[k] == FIBRAD_CONTACT_FREE) sum += a[k] * b[k];
-    return sum;
-}
-
 /* Moves the temperatures by the step in contacts->warming, or by a part of it. The balances are the gradient of a
  * convex function. A step is too long if it ends where this function rises as steeply as it fell at the beginning.
  * missing: the product of the first balances and the step. */
@@ -221,7 +261,10 @@ void fibrad_contact_find(fibrad_contacts *c, double tolerance) {
     find_missing(c);
     for (uint32_t k = 0; k < NEWTON_MAX; k++) {
         fibrad_copy(c->gain, c->load, c->nodes * sizeof *c->load);
-        solve_network(c, true);
+        if (c->streaming)
+            solve_streaming(c);
+        else
+            solve_network(c, true);
         shorten_steps(c);
         move_temperatures(c, fibrad_max(0, product_on_free(c, c->gain, c->warming)));
         find_least(c);

@@ -11,13 +11,15 @@
  *
  *     g = H/(sigma (T_i^2 + T_j^2) (T_i + T_j)).
  *
- * A film is a contact with gas of a given temperature. Temperatures below zero are allowed on the way: there E = -sigma
+ * A film is a contact with gas of a given temperature, or with a slice of a stream. The stream carries heat one way, so
+ * with unknown gas the matrix is not symmetric. Temperatures below zero are allowed on the way: there E = -sigma
  * (T^4 + zero^4). Source: docs/methods.md section 28. */
 #ifndef FIBRAD_CONTACT_H
 #define FIBRAD_CONTACT_H
 
+#include "fibrad_heat.h"
+
 #include <stdbool.h>
-#include <stdint.h>
 
 typedef enum fibrad_contact_kind {
     FIBRAD_CONTACT_NONE,  /* the node has no contacts and no film */
@@ -42,6 +44,10 @@ typedef struct fibrad_contacts {
     double *gain;                        /* sigma K^4 L^2, [nodes], what a node gains through contacts at the end */
     double *error;                       /* K, [nodes], of temperatures at the end; 0 if given */
     double *diagonal, *search, *product; /* [nodes], used within one call */
+    double *shadow, *sent;               /* [nodes], the same, with a stream */
+    const fibrad_stream *stream;         /* NULL: none */
+    uint32_t *slice;                     /* [nodes], of the film; UINT32_MAX: its gas is given */
+    bool streaming;                      /* gas of the stream follows temperatures within fibrad_contact_find */
     double least;                        /* K, slopes are those at temperatures of at least this */
     bool anchored;                       /* a given temperature holds, by contacts, what radiates */
     bool afresh;                         /* no earlier solution tells where temperatures are */
@@ -80,5 +86,14 @@ void fibrad_contact_warm(fibrad_contacts *contacts);
 /* Finds contacts->temperature of free nodes from contacts->supply. It goes on until no temperature changes by more than
  * `tolerance` times the highest one. On entry `temperature` has given temperatures and a first guess of the others. */
 void fibrad_contact_find(fibrad_contacts *contacts, double tolerance);
+
+/* ---- stream.c ---------------------------------------------------------------------------------------------------- */
+
+/* Finds the temperatures of the gas that flows past nodes at contacts->temperature. */
+void fibrad_stream_find(fibrad_contacts *contacts);
+
+/* Takes off `product` what films gain if the temperatures of nodes change by x and the gas follows. x is 0 on nodes of
+ * given temperature. */
+void fibrad_stream_respond(const fibrad_contacts *contacts, const double *x, double *product);
 
 #endif

@@ -91,7 +91,8 @@ static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_arena_doubles(arena, heat->bodies,
                          (double **const[]){&c->temperature, &c->stiff, &c->supply, &c->load, &c->warming,
                                             &c->direction, &c->gain, &c->error, &c->diagonal, &c->search, &c->product,
-                                            &c->missing, &c->film, &c->gas, NULL});
+                                            &c->missing, &c->film, &c->gas, &c->shadow, &c->sent, NULL});
+    c->slice = fibrad_arena_take(arena, heat->bodies, sizeof *c->slice);
     c->node = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *c->node);
     c->kind = fibrad_arena_take(arena, heat->bodies, 1);
     c->nodes = heat->bodies;

@@ -40,7 +40,10 @@
  * E) + sum of H (T_other - T). The preconditioner changes E by x: to the emissions that balance this radiation
  * (contact/contact.h). Then it changes J as on a body of the given emission E + x. No part divides by eps or rho. T is
  * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
- * to step, and each direction is made conjugate to the last one with the present g. */
+ * to step, and each direction is made conjugate to the last one with the present g.
+ *
+ * A stream of gas makes the system one that is not symmetric. During a search its temperatures are given. Where a
+ * search would end they are found anew, with the radiation that now arrives, until they no longer change. */
 #include "heat/solution.h"
 #include "patches/pencils.h"
 #include "heat/sweep.h"
@@ -177,21 +180,27 @@ static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
  * last one. */
 #define BALANCED_ROUGHLY 1e-3
 
+/* Sets up the balances of joined bodies with the radiation that now arrives. */
+static void set_arriving(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
+    fibrad_heat_add_offsets(heat, c->supply);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
+        if (!fibrad_heat_is_joined(heat, b)) continue;
+        c->stiff[b] = stiffness_of_joined(heat, b);
+        c->supply[b] += heat->sources.given_power[b] + absorbable(heat, b);
+    }
+}
+
 /* Finds the changes of the emissions of joined bodies: to those that balance the radiation which now arrives.
  * contacts.missing keeps what is missing in their balances. */
 static void warm_joined(fibrad_heat *heat) {
     fibrad_contacts *c = &heat->contacts;
     if (!c->joins) return;
-    fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
-    fibrad_heat_add_offsets(heat, c->supply);
-    for (uint32_t b = 0; b < heat->bodies; b++) {
-        c->temperature[b] = fibrad_contact_temperature(c, heat->sources.emission[b]);
-        c->missing[b] = 0;
-        if (!fibrad_heat_is_joined(heat, b)) continue;
-        c->stiff[b] = stiffness_of_joined(heat, b);
-        c->supply[b] += heat->sources.given_power[b] + absorbable(heat, b);
-        c->missing[b] = c->supply[b] - c->stiff[b] * heat->sources.emission[b];
-    }
+    set_arriving(heat);
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        c->missing[b] = fibrad_heat_is_joined(heat, b) ? c->supply[b] - c->stiff[b] * heat->sources.emission[b] : 0;
     fibrad_contact_gains(c, c->temperature, c->missing);
     fibrad_contact_find(c, BALANCED_ROUGHLY);
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -406,6 +415,13 @@ static void send_means(fibrad_heat *heat) {
     heat->solution.phase = FIBRAD_HEAT_CHECK;
 }
 
+/* Finds the temperatures of joined bodies, and of the gas of a stream with them. */
+static void find_streaming(fibrad_contacts *c, double tolerance) {
+    c->streaming = c->stream != NULL;
+    fibrad_contact_find(c, tolerance);
+    c->streaming = false;
+}
+
 /* Finds the emissions of joined bodies with which a search begins: those that balance contacts, powers, and as much
  * radiation as if all that a body sees had its emission of now. */
 static void guess_joined(fibrad_heat *heat) {
@@ -417,7 +433,7 @@ static void guess_joined(fibrad_heat *heat) {
         c->supply[b] =
             heat->sources.given_power[b] + (c->stiff[b] - heat->sources.storage[b]) * heat->sources.emission[b];
     }
-    fibrad_contact_find(c, BALANCED_ROUGHLY);
+    find_streaming(c, BALANCED_ROUGHLY);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) continue;
         const double more = fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b];
@@ -495,7 +511,7 @@ static double balance_joined(fibrad_heat *heat, double more, double area) {
     fibrad_contacts *c = &heat->contacts;
     double left = 0;
     set_balances(heat, more, area);
-    fibrad_contact_find(c, FOUND);
+    find_streaming(c, FOUND);
     fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
     fibrad_heat_add_offsets(heat, c->gain);
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -692,11 +708,37 @@ static bool replaces_flows(fibrad_heat *heat) {
     return change > SETTLED;
 }
 
+/* Whether the temperatures of the gas of a stream have changed so much that the search goes on with new ones. */
+#define GAS_SETTLED 1e-5 /* over the range of temperatures */
+static bool replaces_gas(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    if (c->stream == NULL) return false;
+    const uint32_t slices = c->stream->slices;
+    const double *gas = c->stream->gas;
+    double *last = c->stream->gas + (FIBRAD_STREAM_ROWS - 1) * (size_t)slices, change = 0;
+    double least = c->stream->inlet, most = c->stream->inlet;
+    fibrad_copy(last, gas, slices * sizeof *last);
+    set_arriving(heat);
+    find_streaming(c, FOUND);
+    for (uint32_t k = 0; k < slices; k++) {
+        change = fibrad_max(change, fibrad_abs(gas[k] - last[k]));
+        least = fibrad_min(least, gas[k]), most = fibrad_max(most, gas[k]);
+    }
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        if (c->film[b] > 0) least = fibrad_min(least, c->temperature[b]), most = fibrad_max(most, c->temperature[b]);
+    const double rough = change > GAS_SETTLED * (most - least)
+                             ? fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * change / (most - least))
+                             : 0;
+    heat->sources.first_tolerance = fibrad_max(heat->sources.first_tolerance, rough);
+    return rough > 0;
+}
+
 /* Whether what a search takes as given was replaced. */
 static bool replaces_given(fibrad_heat *heat, bool coarse) {
+    heat->sources.first_tolerance = 0;
     const bool uneven = coarse && replaces_unevenness(heat);
-    if (!coarse) heat->sources.first_tolerance = 0;
-    return replaces_flows(heat) || uneven;
+    const bool streaming = replaces_gas(heat);
+    return replaces_flows(heat) || uneven || streaming;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */

@@ -110,6 +110,7 @@ static film_data film_of(const fibrad_heat *heat, const fibrad_heat_sources *s, 
     const uint32_t k = sphere ? end : end - heat->spheres;
     const double *film = sphere ? s->film : s->wall_film, *gas = sphere ? s->gas : s->wall_gas;
     if (film == NULL || film[k] == 0) return (film_data){0, 0};
+    if (sphere && s->stream != NULL) return (film_data){film[k], s->stream->inlet};
     return (film_data){film[k], gas != NULL ? gas[k] : __builtin_nan("")};
 }
 
@@ -143,6 +144,21 @@ static void check_films(const fibrad_heat *heat, const fibrad_heat_sources *s, f
     }
 }
 
+/* The reason why a stream is not valid. A slice that does not exist is the fault of a sphere. */
+static int stream_why(const fibrad_heat *heat, const fibrad_stream *stream, fibrad_fault *fault) {
+    if (stream->slice == NULL || stream->at == NULL || stream->capacity == NULL || stream->gas == NULL)
+        return FIBRAD_WHY_MISSING;
+    bool valid = is_temperature(stream->inlet) && stream->slices > 0 && stream->points > 0;
+    for (uint32_t k = 0; k < stream->points && valid; k++)
+        valid = is_temperature(stream->at[k]) && (k == 0 || stream->at[k] > stream->at[k - 1]) &&
+                stream->capacity[k] > 0 && stream->capacity[k] <= FIBRAD_CONDUCTANCE_MAX;
+    for (uint32_t i = 0; i < heat->spheres && valid; i++) {
+        valid = stream->slice[i] < stream->slices;
+        if (!valid) fault->first = fault->second = i;
+    }
+    return valid ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_STREAM;
+}
+
 /* Checks contacts and films of the sources, and keeps them in heat->checked. */
 static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
     fibrad_contacts *c = heat->checked;
@@ -165,6 +181,7 @@ static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s
     for (uint32_t k = 0; k < heat->given_walls; k++) c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
     fibrad_contact_mark(c);
     check_films(heat, s, fault);
+    if (s->stream != NULL && fault->why == FIBRAD_WHY_UNSAID) fault->why = stream_why(heat, s->stream, fault);
 }
 
 /* Whether a sphere or a wall, by the caller's number, has contacts. */
@@ -433,8 +450,22 @@ static void set_conduction(fibrad_heat *heat, const fibrad_heat_sources *s) {
         found = found || heat->sources.storage[b] >= 0;
     }
     fibrad_heat_find_unevenness(heat, -1);
-    heat->sources.first_tolerance =
-        heat->sources.conducts && found && !heat->solution.warm ? FIBRAD_HEAT_FIRST_TOLERANCE : 0;
+    heat->sources.first_tolerance = (heat->sources.conducts || s->stream != NULL) && found && !heat->solution.warm
+                                        ? FIBRAD_HEAT_FIRST_TOLERANCE
+                                        : 0;
+}
+
+/* Lets the films of spheres end in the gas of a stream. */
+static void begin_stream(fibrad_heat *heat, const fibrad_stream *stream) {
+    fibrad_contacts *c = &heat->contacts;
+    c->stream = stream;
+    if (stream == NULL) return;
+    for (uint32_t k = 0; k < stream->slices; k++)
+        if (!(stream->gas[k] > 0)) stream->gas[k] = stream->inlet;
+    for (uint32_t b = 0; b < heat->bodies; b++)
+        c->slice[b] = b < heat->spheres && c->film[b] > 0 ? stream->slice[heat->order[b]] : UINT32_MAX;
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        if (c->slice[b] != UINT32_MAX) c->gas[b] = stream->gas[c->slice[b]];
 }
 
 /* Takes over the contacts and films that were checked. */
@@ -451,6 +482,7 @@ static void begin_contacts(fibrad_heat *heat, const fibrad_heat_sources *s) {
         const film_data film = film_of(heat, s, k);
         c->film[c->node[k]] = film.conductance, c->gas[c->node[k]] = film.gas;
     }
+    begin_stream(heat, s->stream);
 }
 
 /* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */

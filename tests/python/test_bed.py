@@ -507,6 +507,26 @@ def test_convection_is_a_film():
         bed.solve(None, 0.0, power=0.0, convection=2.0)
 
 
+def test_gas_that_flows():
+    """Spheres of given powers warm a stream by what they give off, slice by slice."""
+    bed = fibrad.Bed([[0.0, 0, 3 * k] for k in range(3)], 1.0)
+    film = {"convection": 2.0, "gas_temperature": 300.0}
+    powers = bed.solve(None, 0.0, power=[10.0, 20.0, 30.0], surroundings=300, gas_flow=([2, 1, 0], 5.0), **film)
+    assert powers.gas_temperatures == pytest.approx([306, 310, 312], rel=1e-12)
+    assert powers.temperatures == pytest.approx(np.array([312, 310, 306]) + np.array([10, 20, 30]) / (8 * math.pi), rel=1e-12)
+    varies = bed.solve(None, 0.0, power=[0.0, 0.0, 30.0], surroundings=300, gas_flow=([2, 1, 0], [[300, 5], [400, 15]]), **film)
+    assert varies.gas_temperatures[2] == pytest.approx(300 + (-5 + math.sqrt(25 + .2 * 30)) / .1, rel=1e-12)
+    later = bed.advance(300.0, 1e5, capacity=1000.0, emissivity=0.0, surroundings=300, gas_flow=([2, 1, 0], 5.0),
+                        gas_temperature_end=400.0, **film)
+    assert later.gas == pytest.approx(-1000 * np.sum(later.temperatures - 300), rel=1e-12)
+    assert later.gas_temperatures == pytest.approx([400, 400, 400], abs=1)
+    for flow, why in (([0, 1], "slices"), ([0, -1, 0], "slices"), ([0.5, 0, 0], "slices")):
+        with pytest.raises(fibrad.Error, match=why):
+            bed.solve(None, 0.0, power=1.0, surroundings=300, gas_flow=(flow, 5.0), **film)
+    with pytest.raises(fibrad.Error, match="stream"):
+        bed.solve(None, 0.0, power=1.0, surroundings=300, gas_flow=([0, 0, 0], -5.0), **film)
+
+
 def test_stored_heat():
     """A table with a latent heat, a held sphere and a wall with a capacity: closed forms without radiation."""
     bed = fibrad.Bed([[0.0, 0, 0], [0.5, 0, 0]], 0.1, walls="box:temperature=300")

@@ -15,7 +15,7 @@ from ._call import Call, Progress
 from ._contacts import Contacts, rule_of, take_contacts
 from ._errors import StateError
 from ._factors import Factors, Folder, Owner, Rule, take_factors
-from ._heat import STEFAN_BOLTZMANN, Advance, Emissivity, Powers, Sources, Store, power_of, stores_of
+from ._heat import STEFAN_BOLTZMANN, Advance, Emissivity, GasFlow, Powers, Sources, Store, power_of, stores_of
 from ._library import library
 from ._light import Absorbed, Light, lights_of, patches_pointer
 from ._limits import DIRECTIONS, DURATION_MAX, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
@@ -315,7 +315,7 @@ class Bed:
               surroundings: Optional[float] = None, walls: Optional[Walls] = None, tolerance: Optional[float] = None,
               sigma: float = STEFAN_BOLTZMANN, light: Optional[Absorbed] = None,
               conductivity: Optional[ArrayLike] = None, contacts: Any = None, convection: Optional[ArrayLike] = None,
-              gas_temperature: Optional[ArrayLike] = None) -> Powers:
+              gas_temperature: Optional[ArrayLike] = None, gas_flow: Optional[GasFlow] = None) -> Powers:
         """Net powers and temperatures of grey diffuse spheres and walls. A solution begins with the last one.
 
         Parameters
@@ -351,13 +351,17 @@ class Bed:
         convection, gas_temperature : (n,) array or float, optional
             [W/(m2 K)] Heat transfer coefficients of spheres to gas, and [K] temperatures of this gas. Walls have keys:
             ``"zmin:convection=20:gas=300"``.
+        gas_flow : (slices, rate), optional
+            Gas flows through slices, and its temperature is found in each. `gas_temperature` is then one number, that of
+            the inlet. slices (n,): whole numbers, 0 at the inlet. rate: [W/K] mass flow times specific heat, or (m, 2)
+            temperatures [K] and rates.
         """
         container, packing, n = self._container, self._packing, self.n
         kelvins = per_sphere("temperature", math.nan if temperature is None else temperature, n, 0, TEMPERATURE_MAX,
                              packing.names, power is not None)
         given = container.with_values(walls)
         sources = Sources(packing, container, given, surroundings, sigma, tolerance, contacts, conductivity, convection,
-                          gas_temperature, self._area_of)
+                          gas_temperature, gas_flow, self._area_of)
         sources.c.temperature = pointer(kelvins)
         powers, wall_light = power_of(power, kelvins, packing), np.zeros(len(given))
         if light is not None:
@@ -399,7 +403,7 @@ class Bed:
                       centre_errors=of_spheres["centre_error"], conducted=of_spheres["conducted"],
                       wall_conducted=by_name["wall_conducted"], contact_flows=flows,
                       convected=of_spheres["convected"], wall_convected=by_name["wall_convected"], gas=result.gas_power,
-                      gas_error=result.gas_error,
+                      gas_error=result.gas_error, gas_temperatures=sources.gas_temperatures,
                       error=math.hypot(result.error_patches, result.error_beams), error_patches=result.error_patches,
                       error_beams=result.error_beams, residual=result.residual, sweeps=result.sweeps)
 
@@ -417,8 +421,9 @@ class Bed:
                 walls_end: Optional[Walls] = None, step: Optional[float] = None, tolerance: Optional[float] = None,
                 sigma: float = STEFAN_BOLTZMANN, conductivity: Optional[ArrayLike] = None, contacts: Any = None,
                 convection: Optional[ArrayLike] = None, gas_temperature: Optional[ArrayLike] = None,
-                gas_temperature_end: Optional[ArrayLike] = None, store: Union[Store, Sequence[Store], None] = None,
-                store_of: Optional[ArrayLike] = None, melted: Optional[ArrayLike] = None) -> Advance:
+                gas_temperature_end: Optional[ArrayLike] = None, gas_flow: Optional[GasFlow] = None,
+                store: Union[Store, Sequence[Store], None] = None, store_of: Optional[ArrayLike] = None,
+                melted: Optional[ArrayLike] = None) -> Advance:
         """Temperatures after a span of time: capacity dT/dt = power + net power. Steps are implicit and of second order.
         They keep the energy. Small spheres among large ones do not limit the step.
 
@@ -449,7 +454,7 @@ class Bed:
             Number of the store of each sphere. Default: 0.
         melted : (n,) array, optional
             Fraction of each sphere that has melted at the beginning: that of the last span. Default: by the temperature.
-        emissivity, surroundings, walls, sigma, conductivity, contacts, convection, gas_temperature
+        emissivity, surroundings, walls, sigma, conductivity, contacts, convection, gas_temperature, gas_flow
             As for `solve`.
         """
         container, packing, n = self._container, self._packing, self.n
@@ -461,11 +466,14 @@ class Bed:
         fraction = np.full(n, math.nan) if melted is None else per_sphere("melted", melted, n, 0, 1, packing.names, True).copy()
         given = container.with_values(walls)
         sources = Sources(packing, container, given, surroundings, sigma, None, contacts, conductivity, convection,
-                          gas_temperature, self._area_of)
+                          gas_temperature, gas_flow, self._area_of)
         if gas_temperature_end is not None and gas_temperature is None:
             raise refuse("gas_temperature_end needs gas_temperature")
         gas = (None if gas_temperature_end is None else
                per_sphere("gas_temperature_end", gas_temperature_end, n, 0, TEMPERATURE_MAX, packing.names))
+        inlet = None if gas is None or gas_flow is None else pointer(gas[:1])
+        if inlet is not None and np.ndim(gas_temperature_end) > 0:
+            raise refuse("gas_flow: gas_temperature_end is one number, that of the inlet")
         end, sides = container.temperatures(container.with_values(walls_end, given))
         if not np.array_equal(np.isnan(end), np.isnan(sources.wall_temperature)) or not sources.has_sides(sides):
             raise refuse("walls_end: only the temperatures of walls can change, and not those of single triangles")
@@ -479,7 +487,7 @@ class Bed:
         capacities[:] = container.capacities(given)
         sources.set_wall_power(container.powers(given, True))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
-                    wall_temperature=pointer(end), surroundings=ctypes.pointer(around), gas=pointer(gas),
+                    wall_temperature=pointer(end), surroundings=ctypes.pointer(around), gas=pointer(gas), inlet=inlet,
                     step=real("step", step, 0, DURATION_MAX), tolerance=real("tolerance", tolerance, 0, 1),
                     store=structures if stores else None, stores=len(stores), store_of=pointer(number, WHOLE) if stores else None,
                     melted=pointer(fraction), stored=pointer(stored), wall_capacity=pointer(capacities), wall_end=pointer(ended),
@@ -487,7 +495,8 @@ class Bed:
         self._use(library.fibrad_bed_advance, sources.c, span)
         self._warn(SOURCES)
         return Advance(temperatures=now, spheres=flow, walls=dict(zip(container.names, energy.tolist())),
-                       surroundings=span.surroundings_energy, gas=span.gas_energy, held=span.held_energy, stored=stored, melted=fraction,
+                       surroundings=span.surroundings_energy, gas=span.gas_energy, gas_temperatures=sources.gas_temperatures,
+                       held=span.held_energy, stored=stored, melted=fraction,
                        wall_temperatures=dict(zip(container.names, ended.tolist())), steps=span.steps, refused=span.refused,
                        corrections=span.corrections, error=span.error)
 

@@ -1,6 +1,7 @@
 # _heat.py - powers and temperatures of a bed, and what they come from. SPDX-License-Identifier: MIT
 from __future__ import annotations
 
+import ctypes
 import dataclasses
 import math
 from collections.abc import Callable, Sequence
@@ -13,7 +14,7 @@ from ._call import Call
 from ._contacts import contacts_of
 from ._limits import CAPACITY_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._scene import MARKS, WHOLE, Packing, pointer
-from ._structures import EmissivityLaw, HeatSources, Law, Store as StoreStructure
+from ._structures import EmissivityLaw, HeatSources, Law, Store as StoreStructure, Stream
 from ._values import doubles, per_sphere, real, refuse
 from ._walls import Container, Wall
 
@@ -21,6 +22,7 @@ STEFAN_BOLTZMANN = 5.670374419e-8
 """[W/(m2 K4)]"""
 
 Emissivity = Union[ArrayLike, Callable[[Any], ArrayLike]]
+GasFlow = tuple[ArrayLike, ArrayLike]
 
 
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
@@ -77,6 +79,8 @@ class Powers:
         [W] net power of the gas.
     gas_error
         [W] estimated error of `gas`.
+    gas_temperatures
+        [K] temperature of each slice of `gas_flow`, from the inlet to the outlet.
     contact_flows
         [W] (m,) what each contact conducts from i to j.
     error
@@ -114,6 +118,7 @@ class Powers:
     wall_convected: dict[str, float]
     gas: float
     gas_error: float
+    gas_temperatures: NDArray[np.float64]
     contact_flows: NDArray[np.float64]
     error: float
     error_patches: float
@@ -192,6 +197,8 @@ class Advance:
         [J] energy that the surroundings have gained.
     gas
         [J] energy that the gas of `convection` has gained.
+    gas_temperatures
+        [K] temperature of each slice of `gas_flow` at the end.
     held
         [J] energy that spheres of infinite capacity have gained.
     stored
@@ -215,6 +222,7 @@ class Advance:
     walls: dict[str, float]
     surroundings: float
     gas: float
+    gas_temperatures: NDArray[np.float64]
     held: float
     stored: NDArray[np.float64]
     melted: NDArray[np.float64]
@@ -236,8 +244,9 @@ class Sources:
 
     def __init__(self, packing: Packing, container: Container, walls: list[Wall], surroundings: Optional[float],
                  sigma: float, tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike],
-                 convection: Optional[ArrayLike], gas: Optional[ArrayLike], area_of: Callable[[int], float]):
-        n, names = packing.n, packing.names
+                 convection: Optional[ArrayLike], gas: Optional[ArrayLike], flow: Optional[GasFlow],
+                 area_of: Callable[[int], float]):
+        n, names, self._packing = packing.n, packing.names, packing
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         self.joined = contacts_of(contacts, n, container)
@@ -251,8 +260,9 @@ class Sources:
         self._film = None if convection is None else per_sphere("convection", convection, n, 0, 1e12, names) * 4 * math.pi * packing.r**2
         self.gas = None if gas is None else per_sphere("gas_temperature", gas, n, 0, TEMPERATURE_MAX, names)
         self._wall_film, self._wall_gas = container.films(walls, area_of)
+        self._set_stream(flow, gas)
         self.c = HeatSources(
-            film=pointer(self._film), gas=pointer(self.gas), wall_film=pointer(self._wall_film), wall_gas=pointer(self._wall_gas),
+            film=pointer(self._film), gas=pointer(self.gas), stream=self._stream, wall_film=pointer(self._wall_film), wall_gas=pointer(self._wall_gas),
             surroundings=real("surroundings", surroundings, 0, TEMPERATURE_MAX), sigma=real("sigma", sigma, *SIGMA),
             tolerance=real("tolerance", tolerance, 0, 1), conductivity=pointer(self._conducts),
             wall_temperature=pointer(self.wall_temperature), wall_emissivity=pointer(self._wall_emissivity),
@@ -260,8 +270,29 @@ class Sources:
             contacts=self.joined.conductance.size, conductance=pointer(self.joined.conductance),
             contact_first=pointer(self.joined.first, WHOLE), contact_second=pointer(self.joined.second, WHOLE))
         self._around = surroundings or 300.0
-        self._packing = packing
         self.set_wall_power(container.powers(walls))
+
+    def _set_stream(self, flow: Optional[GasFlow], inlet: Optional[ArrayLike]) -> None:
+        """Sets the stream of gas, and room for its temperatures."""
+        self.gas_temperatures, self._stream = np.zeros(0), None
+        if flow is None:
+            return
+        if inlet is None or np.ndim(inlet) > 0:
+            raise refuse("gas_flow needs convection, and gas_temperature is one number, that of the inlet")
+        slices = np.asarray(flow[0])
+        if slices.shape != (self._packing.n,) or slices.dtype.kind not in "iu" or np.any(slices < 0):
+            raise refuse(f"gas_flow: slices must be ({self._packing.n},) whole numbers from 0 on")
+        self._slices = slices.astype(np.uint32)
+        rates = np.array([[300.0, flow[1]]]) if np.ndim(flow[1]) == 0 else np.asarray(flow[1], float)
+        if rates.ndim != 2 or rates.shape[1] != 2:
+            raise refuse("gas_flow: the rate must be a number [W/K] or (m, 2) temperatures and rates")
+        self._rates = np.ascontiguousarray(rates.T)
+        count = int(slices.max(initial=0)) + 1
+        memory = np.zeros((4, count))
+        self.gas_temperatures = memory[0]
+        self._stream = ctypes.pointer(Stream(
+            slice=pointer(self._slices, WHOLE), at=pointer(self._rates[0]), capacity=pointer(self._rates[1]), slices=count,
+            points=len(rates), inlet=float(inlet), gas=pointer(memory)))
 
     def has_sides(self, sides: Optional[NDArray[np.float64]]) -> bool:
         """Whether these are the temperatures of the sides of triangles."""

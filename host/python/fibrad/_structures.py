@@ -9,6 +9,11 @@ EmissivityLaw: Any = CFUNCTYPE(None, c_void_p, POINTER(c_double), POINTER(c_doub
 Observe: Any = CFUNCTYPE(None, c_void_p, c_double, POINTER(c_double))
 
 
+class Stream(Structure):
+    _fields_ = [("slice", POINTER(c_uint32)), ("at", POINTER(c_double)), ("capacity", POINTER(c_double)),
+                ("slices", c_uint32), ("points", c_uint32), ("inlet", c_double), ("gas", POINTER(c_double))]
+
+
 class HeatSources(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("emissivity", POINTER(c_double)), ("power", POINTER(c_double)),
                 ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
@@ -20,7 +25,7 @@ class HeatSources(Structure):
                 ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
                 ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("film", POINTER(c_double)),
                 ("gas", POINTER(c_double)), ("wall_film", POINTER(c_double)), ("wall_gas", POINTER(c_double)),
-                ("contact_places", POINTER(c_double))]
+                ("stream", POINTER(Stream)), ("contact_places", POINTER(c_double))]
 
 
 class Plane(Structure):
@@ -177,13 +182,13 @@ class Span(Structure):
                 ("store", POINTER(Store)), ("store_of", POINTER(c_uint32)), ("stores", c_uint32),
                 ("melted", POINTER(c_double)), ("wall_capacity", POINTER(c_double)), ("wall_end", POINTER(c_double)),
                 ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)),
-                ("gas", POINTER(c_double)), ("wall_gas", POINTER(c_double)), ("step", c_double),
-                ("tolerance", c_double), ("power", POINTER(c_double)), ("wall_power", POINTER(c_double)),
-                ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)), ("surroundings_energy", c_double),
-                ("gas_power", c_double), ("gas_energy", c_double), ("held_energy", c_double),
-                ("stored", POINTER(c_double)), ("law", POINTER(Law)), ("observe", Observe), ("context", c_void_p),
-                ("error", c_double), ("steps", c_uint64), ("refused", c_uint64), ("sweeps", c_uint64),
-                ("corrections", c_uint64)]
+                ("gas", POINTER(c_double)), ("wall_gas", POINTER(c_double)), ("inlet", POINTER(c_double)),
+                ("step", c_double), ("tolerance", c_double), ("power", POINTER(c_double)),
+                ("wall_power", POINTER(c_double)), ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)),
+                ("surroundings_energy", c_double), ("gas_power", c_double), ("gas_energy", c_double),
+                ("held_energy", c_double), ("stored", POINTER(c_double)), ("law", POINTER(Law)), ("observe", Observe),
+                ("context", c_void_p), ("error", c_double), ("steps", c_uint64), ("refused", c_uint64),
+                ("sweeps", c_uint64), ("corrections", c_uint64)]
 
 
 class ContactRule(Structure):
@@ -198,12 +203,12 @@ class ContactList(Structure):
 
 
 STRUCTURES: dict[str, Any] = {
-    "fibrad_heat_sources": HeatSources, "fibrad_plane": Plane, "fibrad_cylinder": Cylinder, "fibrad_wall": Wall,
-    "fibrad_occupancy": Occupancy, "fibrad_triangles": Triangles, "fibrad_scene_config": SceneConfig,
-    "fibrad_spheres": Spheres, "fibrad_fault": Fault, "fibrad_run": Run, "fibrad_scene_facts": SceneFacts,
-    "fibrad_warning": Warning, "fibrad_beam_rule": BeamRule, "fibrad_cast_rule": CastRule,
-    "fibrad_exchange_rule": ExchangeRule, "fibrad_bed_rule": BedRule, "fibrad_factors": Factors,
-    "fibrad_bed_matrix": BedMatrix, "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow,
+    "fibrad_stream": Stream, "fibrad_heat_sources": HeatSources, "fibrad_plane": Plane, "fibrad_cylinder": Cylinder,
+    "fibrad_wall": Wall, "fibrad_occupancy": Occupancy, "fibrad_triangles": Triangles,
+    "fibrad_scene_config": SceneConfig, "fibrad_spheres": Spheres, "fibrad_fault": Fault, "fibrad_run": Run,
+    "fibrad_scene_facts": SceneFacts, "fibrad_warning": Warning, "fibrad_beam_rule": BeamRule,
+    "fibrad_cast_rule": CastRule, "fibrad_exchange_rule": ExchangeRule, "fibrad_bed_rule": BedRule,
+    "fibrad_factors": Factors, "fibrad_bed_matrix": BedMatrix, "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow,
     "fibrad_heat_config": HeatConfig, "fibrad_law": Law, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
     "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult, "fibrad_store": Store,
     "fibrad_span": Span, "fibrad_contact_rule": ContactRule, "fibrad_contact_list": ContactList}
