@@ -28,14 +28,16 @@ void heat_columns(const struct contents *what, struct heat_column column[HEAT_CO
         {"absorbed_W", light ? light->absorbed : NULL, NULL, NULL},
         {"q_radiation_W", parts, r->conducted, r->convected},
         {"q_conduction_W", r->conducted, NULL, NULL},
-        {"q_convection_W", r->convected, NULL, NULL}};
+        {"q_convection_W", r->convected, NULL, NULL},
+        {"melted", what->melted, NULL, NULL}};
     memcpy(column, all, sizeof all);
 }
 
 const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_NAME], double value[HEAT_COLUMNS]) {
     const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
-    for (int c = 0; c < HEAT_COLUMNS; ++c) value[c] = c >= HEAT_INSIDE && c < HEAT_LIGHT ? NAN : 0;
+    for (int c = 0; c < HEAT_COLUMNS; ++c)
+        value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c == HEAT_MELTED ? NAN : 0;
     if (k == what->walls->count) {
         const fibrad_stream *stream = what->sources->stream;
         value[HEAT_TEMPERATURE] = stream ? stream->gas[stream->slices - 1] : NAN, value[HEAT_TEMPERATURE_ERROR] = NAN;

@@ -41,6 +41,7 @@ struct contents {
     const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
     const fibrad_light_result *light;   /* [W], light from outside that is absorbed; NULL: there is no light */
     const fibrad_heat_result *result;   /* [W], [K]; arrays of insides are all set or all NULL, other arrays are set */
+    const double *melted;               /* [n] fractions; NULL: nothing melts */
 
     const struct conduction *conduction;
 };
@@ -65,7 +66,7 @@ struct heat_column {
 };
 
 /* Columns from HEAT_INSIDE on belong to spheres that conduct, those from HEAT_LIGHT on to light from outside, those
- * from HEAT_PARTS on are parts of the power. */
+ * from HEAT_PARTS on are parts of the power. The last one is the fraction that has melted. */
 enum {
     HEAT_TEMPERATURE,
     HEAT_POWER,
@@ -74,7 +75,8 @@ enum {
     HEAT_INSIDE,
     HEAT_LIGHT = 9,
     HEAT_PARTS = 11,
-    HEAT_COLUMNS = 14
+    HEAT_MELTED = 14,
+    HEAT_COLUMNS
 };
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]);
 
