@@ -32,7 +32,7 @@ TEST(help_is_short) {
     static const struct {
         const char *command;
         int options, all;
-    } commands[] = {{"factors", 28, 45}, {"heat", 31, 51}, {"conductivity", 28, 45},
+    } commands[] = {{"factors", 28, 45}, {"heat", 31, 52}, {"conductivity", 28, 45},
                     {"join", 28, 45},    {"pair", 28, 45}, {"furnace", 28, 45}};
     for (size_t k = 0; k < sizeof commands / sizeof *commands; ++k)
         for (int all = 0; all < 2; ++all) {
@@ -166,7 +166,8 @@ static const struct {
      "--wall: zmin has no temperature; give zmin:temperature=NUMBER, zmin:power=NUMBER or zmin:insulated"},
     {{"heat", MONO, "--emissivity=.5", "--temperature=9", "--power=4"}, "a sphere has only one of them"},
     {{"heat", MONO, "--emissivity=.5", "--power=1e40"}, "--power: 1e40 is not within"},
-    {{"heat", MONO, "--wall=zmin:power=1:temperature=3"}, "--wall: zmin: power excludes temperature"},
+    {{"heat", MONO, "--wall=zmin:power=1:temperature=3"},
+     "--wall: zmin: temperature excludes power, unless the wall has a capacity"},
     {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin:power=1"},
      "--wall: zmin is endless and needs a temperature"},
     {{"heat", MONO, "--emissivity=.5", "--power=4", "--ambient=3", "--wall=zmin:temperature=hot"},

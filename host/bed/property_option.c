@@ -102,14 +102,19 @@ void quantity_free(struct quantity *quantity) {
     for (int k = 0; k < QUANTITY_TYPES_MAX; ++k) curve_free(&quantity->curve[k]);
 }
 
-/* The table for sphere i. NULL: its value is a number. */
-static const struct curve *curve_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
+int quantity_item(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
     int k = 0;
     if (quantity->types) {
         const double type = bed->extra[i * bed->extras + quantity->index];
         while (k < quantity->types - 1 && quantity->type[k] != type) ++k;
     }
-    return quantity->curve[k].n > 0 ? &quantity->curve[k] : NULL;
+    return k;
+}
+
+/* The table for sphere i. NULL: its value is a number. */
+static const struct curve *curve_of_sphere(const struct quantity *quantity, const struct bed *bed, uint32_t i) {
+    const struct curve *curve = &quantity->curve[quantity_item(quantity, bed, i)];
+    return curve->n > 0 ? curve : NULL;
 }
 
 bool quantity_curves(const struct quantity *quantity) {

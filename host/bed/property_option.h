@@ -67,6 +67,9 @@ void quantity_free(struct quantity *quantity);
 /* Whether a quantity has tables. */
 bool quantity_curves(const struct quantity *quantity);
 
+/* Which item of the list is that of sphere i, and of quantity->curve. 0 if values are not by type. */
+int quantity_item(const struct quantity *quantity, const struct bed *bed, uint32_t i);
+
 /* Sets values[i] to that of the table of sphere i at temperature[i]. Spheres without a table or a temperature (NaN)
  * keep their value. */
 void quantity_follow(const struct quantity *quantity, const struct bed *bed, const double *temperature, double *values);

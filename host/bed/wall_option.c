@@ -140,6 +140,7 @@ static int say_more(struct walls *walls, const struct wall_words *words) {
     }
     if (words->given & WALL_EMISSIVITY) said->emissivity = words->emissivity;
     if (words->given & WALL_ABSORPTIVITY) said->absorptivity = words->absorptivity;
+    if (words->given & WALL_CAPACITY) said->capacity = words->capacity;
     said->given |= words->given;
     return STATUS_OK;
 }

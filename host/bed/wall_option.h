@@ -52,7 +52,8 @@ struct wall_options {
     "  :temperature=T         or :temperatures=FILE, a column with a temperature for each triangle\n"                  \
     "  :power=W               power that the wall gives off; its temperature is found\n"                               \
     "  :insulated             sends back all that arrives\n"                                                           \
-    "They may have :emissivity=E, 0 to 1 [1], of light :absorptivity=A [emissivity], and :convection=H with :gas=T.\n"
+    "They may have :emissivity=E, 0 to 1 [1], of light :absorptivity=A [emissivity], and :convection=H with :gas=T.\n" \
+    "With --until they may have :capacity=C [J/K]. Such a wall begins at :temperature=T, and :power=W heats it.\n"
 
 /* The name of a wall, "xmin" ... "zmax", "cylinder", "xcylinder", "ycylinder" or that of a mesh; the name of the side
  * of a plane. */

@@ -42,11 +42,11 @@ static const struct key {
     {"at", "0.1", WALL_AT, 0, WALL_PLANE, NUMBER, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX,
      offsetof(struct wall_words, wall.plane.at)},
     {"open", NULL, WALL_OPEN, OPEN_EXCLUDES, WALL_PLANE, FLAG, 0, 0, 0},
-    {"temperature", "1200", WALL_TEMPERATURE, WALL_HEAT | WALL_OPEN, WALL_NONE, TEXT, 0, 0,
+    {"temperature", "1200", WALL_TEMPERATURE, (WALL_HEAT | WALL_OPEN) & ~WALL_POWER, WALL_NONE, TEXT, 0, 0,
      offsetof(struct wall_words, temperature_text)},
     {"temperatures", "FILE", WALL_TEMPERATURES, WALL_HEAT | WALL_OPEN, WALL_NONE, TEXT, 0, 0,
      offsetof(struct wall_words, temperatures)},
-    {"power", "500", WALL_POWER, WALL_HEAT | WALL_OPEN, WALL_NONE, NUMBER, -1e30, 1e30,
+    {"power", "500", WALL_POWER, (WALL_HEAT | WALL_OPEN) & ~WALL_TEMPERATURE, WALL_NONE, NUMBER, -1e30, 1e30,
      offsetof(struct wall_words, power)},
     {"insulated", NULL, WALL_INSULATED, WALL_HEAT | WALL_OPEN, WALL_NONE, FLAG, 0, 0, 0},
     {"emissivity", "0.8", WALL_EMISSIVITY, WALL_OPEN, WALL_NONE, NUMBER, 0, 1, offsetof(struct wall_words, emissivity)},
@@ -259,5 +259,6 @@ bool wall_words_take(struct wall_words *wall, char **text, unsigned allowed, cha
         if (!take_key(wall, key, value, allowed, fault)) return false;
     }
     if (stop == 0) *text = NULL;
-    return true;
+    if ((wall->given & WALL_CAPACITY) || (~wall->given & (WALL_TEMPERATURE | WALL_POWER))) return true;
+    return refuse(wall, fault, "temperature excludes power, unless the wall has a capacity");
 }

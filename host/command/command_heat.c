@@ -48,6 +48,7 @@ static const struct option heat_table[] = {
      TO_FLAG(struct heat, face.wanted)},
     OPTIONS_CONTACTS_RARE(struct heat),
     {OPTION_MEMBERS(struct heat)},
+    {OPTION_MELTING(struct heat)},
     OPTIONS_STREAM(struct heat),
     {OPTION_PROFILE(struct heat)},
     {OPTION_STEP(struct heat)},
@@ -92,7 +93,10 @@ static int heat_help(void) {
             "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
             "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
             "the temperature of a wall (zmin:temperature=@TABLE), of the surroundings or of gas. The .csv then has\n"
-            "the time in its first column. A series of .vtp has a .pvd for ParaView.\n",
+            "the time in its first column. A series of .vtp has a .pvd for ParaView.\n"
+            "A sphere whose heat capacity is inf keeps its temperature: --heat-capacity 1:800,2:inf holds type 2. The\n"
+            "run ends with an error where a temperature leaves the table of --heat-capacity. With --melting outputs\n"
+            "have the fraction that has melted.\n",
             "@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
             "which. Beyond the ends of a table its first or last value is taken, with a warning.\n",
             "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
@@ -140,7 +144,7 @@ static int check_heat(struct heat *h) {
     bed_options_quantity(&h->options, &h->emissivities, NULL);
     bed_options_quantity(&h->options, &h->solid, SOLID_UNIT);
     status = contacts_check(&h->contacts, &h->options, h->solid.given);
-    if (!status) status = time_check(&h->time, &h->options);
+    if (!status) status = time_check(&h->time, h->given.zero, &h->options);
     if (!status) status = light_check(&h->light, &h->options, &h->emissivities);
     if (!status) status = film_check(h);
     return status ? status : given_check(&h->given, &h->options);
@@ -166,13 +170,14 @@ static int heat_frame(void *heat, struct bed *bed) {
 }
 
 int command_heat(int argc, char **argv) {
-    struct heat heat = {.options.walls.keys =
-                            WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CONVECTION | WALL_GAS};
+    struct heat heat = {.options.walls.keys = WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CONVECTION |
+                                              WALL_GAS | WALL_CAPACITY};
     int status = options_read("heat", heat_table, argc, argv, &heat);
     if (!status) status = check_heat(&heat);
     const int ended = bed_options_end(&heat.options, status, heat_help, heat_frame, &heat);
     quantity_free(&heat.emissivities);
     quantity_free(&heat.solid);
+    quantity_free(&heat.time.capacity);
     quantity_free(&heat.contacts.conductivity);
     curve_free(&heat.contacts.gas_curve);
     curve_free(&heat.given.ambient_curve);

@@ -35,15 +35,11 @@ static int check_conduction(fibrad_insitu *s, const fibrad_insitu_contacts *cont
                             const fibrad_insitu_state *state) {
     if (!contacts || (bed->n && !contacts->conductivity) || state->n != bed->n || bed->walls != s->set.walls ||
         (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
-        !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0))
+        !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0 && contacts->wall >= 0))
         return FIBRAD_E_ARGUMENT;
     if (bed->conductivity)
         return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
                              "contacts need particles of one temperature each, not particles that conduct inside");
-    for (uint32_t k = 0; k < bed->walls; ++k)
-        if (bed->wall[k].kind == FIBRAD_WALL_MESH)
-            return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
-                                 "wall %" PRIu32 " is a mesh, and contacts need planes or a cylinder", k + 1);
     for (size_t i = 0; i < bed->n; ++i)
         if (!(contacts->conductivity[i] > 0 && isfinite(contacts->conductivity[i])))
             return fibrad_refuse(s->message, FIBRAD_E_ARGUMENT,
@@ -78,9 +74,12 @@ static int gather_particles(fibrad_insitu_build *b, const fibrad_insitu_contacts
 static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts, double gas_reach,
                            struct conductor **conductor, uint32_t *count) {
     fibrad_contact_rule rule = {.spots = contacts->hertz ? FIBRAD_SPOTS_HERTZ : FIBRAD_SPOTS_LENS};
-    rule.scale = contacts->scale, rule.gas_reach = gas_reach, rule.gas_least = contacts->gas_least;
-    const fibrad_scene_config config = {
-        .wall = b->bed->wall, .walls = b->bed->walls, .period = {b->period[0], b->period[1], b->period[2]}};
+    rule.scale = contacts->scale, rule.gas_reach = gas_reach, rule.gas_least = contacts->gas_least,
+    rule.wall = contacts->wall;
+    const fibrad_scene_config config = {.wall = b->bed->wall,
+                                        .walls = b->bed->walls,
+                                        .triangles = b->bed->triangles,
+                                        .period = {b->period[0], b->period[1], b->period[2]}};
     const fibrad_particle *p = b->to->particle.at;
     const fibrad_spheres spheres = fibrad_particle_spheres(p, b->own + b->halo, NULL);
     fibrad_contact_list *list;

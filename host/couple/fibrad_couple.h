@@ -260,6 +260,7 @@ typedef struct fibrad_insitu_contacts {
     double scale;               /* of the radii of spots; 0: 1 */
     double gas;                 /* power/(L K), conductivity of the gas in narrow gaps; 0: none */
     double gas_least;           /* L, least gap that counts; 0: 1e-7 of the smaller radius */
+    double wall;                /* power/(L K), conductivity of walls at spots; 0: infinite */
     const double *capacity;     /* energy/K, heat capacities [n] of the bed, above 0 to INFINITY; NULL: one part */
     double seconds;             /* of the step of heat for which the powers are; unused without capacity */
 } fibrad_insitu_contacts;
@@ -285,7 +286,7 @@ typedef struct fibrad_insitu_conducted {
  *            conducted: may be NULL
  *   Errors   _ARGUMENT: as for fibrad_insitu_rows and fibrad_insitu_powers; a conductivity is not above 0
  *            _STATE: there are no rows
- *            _UNSUPPORTED: a wall is a mesh, or bed->conductivity is given
+ *            _UNSUPPORTED: bed->conductivity is given
  *            _MEMORY
  *   Cost     1 microsecond for each particle; with gas 0.5 more for each pair within reach */
 int fibrad_insitu_conduct(fibrad_insitu *insitu, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,

@@ -234,17 +234,26 @@ module fibrad
         type(c_ptr) :: patches = c_null_ptr
     end type fibrad_light_result
 
+    type, bind(C) :: fibrad_store
+        type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
+        integer(c_int32_t) :: rows = 0
+        real(c_double) :: melting = 0, latent = 0, width = 0
+    end type fibrad_store
+
     type, bind(C) :: fibrad_span
         type(c_ptr) :: temperature = c_null_ptr, capacity = c_null_ptr
         real(c_double) :: duration = 0
-        type(c_ptr) :: wall_temperature = c_null_ptr, surroundings = c_null_ptr, gas = c_null_ptr, &
-            wall_gas = c_null_ptr, inlet = c_null_ptr
+        type(c_ptr) :: store = c_null_ptr, store_of = c_null_ptr
+        integer(c_int32_t) :: stores = 0
+        type(c_ptr) :: melted = c_null_ptr, wall_capacity = c_null_ptr, wall_end = c_null_ptr, &
+            wall_temperature = c_null_ptr, surroundings = c_null_ptr, gas = c_null_ptr, wall_gas = c_null_ptr, &
+            inlet = c_null_ptr
         real(c_double) :: step = 0, tolerance = 0
         type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
         type(c_ptr) :: wall_energy = c_null_ptr
-        real(c_double) :: surroundings_energy = 0, gas_power = 0, gas_energy = 0
-        type(c_ptr) :: law = c_null_ptr
+        real(c_double) :: surroundings_energy = 0, gas_power = 0, gas_energy = 0, held_energy = 0
+        type(c_ptr) :: stored = c_null_ptr, law = c_null_ptr
         type(c_funptr) :: observe = c_null_funptr
         type(c_ptr) :: context = c_null_ptr
         real(c_double) :: error = 0
@@ -253,7 +262,7 @@ module fibrad
 
     type, bind(C) :: fibrad_contact_rule
         integer(c_int) :: spots = 0
-        real(c_double) :: scale = 0, gas_reach = 0, gas_jump = 0, gas_least = 0
+        real(c_double) :: scale = 0, gas_reach = 0, gas_jump = 0, gas_least = 0, wall = 0
         integer(c_int) :: gas_alone = 0
     end type fibrad_contact_rule
 

@@ -227,7 +227,7 @@ void warn_closed(struct warned *warned) {
 /* The index of the first value outside low to high. n: there is none. */
 static uint32_t find_outlier(const double *value, uint32_t n, double low, double high) {
     uint32_t i = 0;
-    while (i < n && value[i] >= low && value[i] <= high) ++i;
+    while (i < n && ((value[i] >= low && value[i] <= high) || isinf(value[i]))) ++i; /* infinite: held */
     return i;
 }
 

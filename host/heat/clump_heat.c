@@ -47,16 +47,18 @@ static void add_member(struct heat *h, uint32_t i, bool found, double *area) {
 }
 
 int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) {
-    enum { ARRAYS = 7 };
+    enum { ARRAYS = 8 };
     struct clump_state *state = &h->clumps;
     fibrad_heat_result *result = &state->result;
-    double *area, **const of_bodies[ARRAYS] = {&area,
-                                               &result->temperature,
-                                               &result->temperature_error,
-                                               &result->power,
-                                               &result->power_error,
-                                               &result->conducted,
-                                               &result->convected};
+    double *area, *melted,
+        **const of_bodies[ARRAYS] = {&area,
+                                     &melted,
+                                     &result->temperature,
+                                     &result->temperature_error,
+                                     &result->power,
+                                     &result->power_error,
+                                     &result->conducted,
+                                     &result->convected};
     if (!h->bed->clump) return STATUS_OK;
     free(state->metres);
     *result = h->result;
@@ -66,6 +68,7 @@ int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) 
     for (uint32_t i = 0; i < h->bed->n; ++i) {
         state->metres[i] = state->area[i] * gsl_pow_2(bed->metres);
         add_member(h, i, isnan(what->sources->temperature[i]), area);
+        if (what->melted) melted[state->body[i]] = what->melted[i]; /* all members are equally melted */
     }
     if (!h->result.conducted) result->conducted = NULL;
     if (!h->result.convected) result->convected = NULL;
@@ -73,6 +76,7 @@ int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) 
     if (h->members) return STATUS_OK;
     bed_free(&state->bodies);
     what->bodies = &state->bodies, what->of_bodies = result, what->area_of_bodies = area;
+    what->melted_of_bodies = what->melted ? melted : NULL;
     const int status = bed_bodies(bed, state->n, state->body, area, &state->bodies);
     state->bodies.frame = bed->frame, state->bodies.timestep = bed->timestep;
     return status;

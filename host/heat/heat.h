@@ -177,7 +177,8 @@ struct film_state {
     double section, inlet_end;    /* [m2] cross-section; [K] temperature of the inlet at the end of a span of time */
 };
 
-/* ---- clumps: bodies of several spheres ---------------------------------------------------------------------------- */
+/* ---- clumps: bodies of several spheres ----------------------------------------------------------------------------
+ */
 
 /* Row of a table of options, for a request with a field `members`, without braces. */
 #define OPTION_MEMBERS(request)                                                                                        \
@@ -187,8 +188,8 @@ struct film_state {
 /* A paragraph of --help. */
 #define CLUMPS_MORE                                                                                                    \
     "--clump: A clump is one body of one temperature; what its spheres hide of each other is no surface. Its\n"        \
-    "spheres have the same temperature or none; their powers add up. It stores heat by its volume, and gains\n"       \
-    "from gas by its exposed area, area_m2. The .csv and .json have a line a clump, i being its number; .vtp\n"       \
+    "spheres have the same temperature or none; their powers add up. It stores heat by its volume, and gains\n"        \
+    "from gas by its exposed area, area_m2. The .csv and .json have a line a clump, i being its number; .vtp\n"        \
     ".dump and --profile have the spheres. Contacts within a clump carry nothing.\n"
 
 /* Clumps of one bed. NULL: there are none. */
@@ -211,7 +212,8 @@ struct clump_state {
     {0, "until", "S", "follow the temperatures up to S seconds; from those given [powers at one time]",                \
      TO_NUMBER(request, time.until, 1 / SECONDS_MAX, SECONDS_MAX)},                                                    \
         {0, "heat-capacity", "C",                                                                                      \
-         "specific heat of the spheres [J/(kg K)]; a number, TYPE:C,..., or a column of the file",                     \
+         "specific heat of the spheres [J/(kg K)]; a number, TYPE:C,..., or a column of the file; @TABLE of "          \
+         "temperatures [K] and specific heats may stand for a number; inf: the temperature stays",                     \
          TO_FUNCTION(capacity_option, request, time.capacity)},                                                        \
         {0, "density", "RHO", "density of the spheres [kg/m3]; a number, TYPE:RHO,..., or a column of the file",       \
          TO_FUNCTION(density_option, request, time.density)},                                                          \
@@ -219,6 +221,10 @@ struct clump_state {
         0, "times", "LIST", "times of output in seconds, 0,10,60 for example, or every:60 [the end]",                  \
             TO_TEXT(request, time.times)                                                                               \
     }
+#define OPTION_MELTING(request)                                                                                        \
+    0, "melting", "T,L[,WIDTH]",                                                                                       \
+        "spheres melt at T with the latent heat L [J/kg], or evenly over WIDTH [K] about T [nothing melts]",           \
+        TO_FUNCTION(melting_option, request, time)
 #define OPTION_STEP(request)                                                                                           \
     0, "step", "S", "longest step in seconds, or auto for steps with errors of 1e-4 [auto]",                           \
         TO_FUNCTION(step_option, request, time.step)
@@ -228,14 +234,15 @@ struct time_options {
     double until, step, every; /* [s] 0: not given, automatic, not given */
     struct quantity capacity, density;
     const char *times;
+    double melting, latent, width; /* in the unit of temperatures, [J/kg], [K]; latent 0: nothing melts */
 };
 
 /* Functions of the rows above. */
-option_take capacity_option, density_option, step_option;
+option_take capacity_option, density_option, melting_option, step_option;
 
 /* Checks the options when all have been read, and asks `bed` for the columns they name. Without --until the other
- * options are refused. Status 0 or STATUS_USAGE. */
-int time_check(struct time_options *time, struct bed_options *bed);
+ * options are refused. zero: 0 of the unit of temperatures [K]. Status 0 or STATUS_USAGE. */
+int time_check(struct time_options *time, double zero, struct bed_options *bed);
 
 /* Row of a table of options, for a request with a field `profile`, without braces. */
 #define OPTION_PROFILE(request)                                                                                        \

@@ -78,6 +78,21 @@ static int wall_temperature(const struct given_options *options, const struct wa
     return status;
 }
 
+/* A wall that stores heat ends somewhere, and has one temperature at the beginning. */
+static int check_capacity(const struct given_options *options, const struct bed *bed, const struct walls *walls,
+                          uint32_t k) {
+    const struct wall_words *said = &walls->said[k];
+    const char *name = wall_name(walls, k);
+    const bool endless = wall_endless(walls, bed, &walls->wall[k]);
+    if (!(said->given & WALL_CAPACITY)) return STATUS_OK;
+    if (!options->timed) return message(STATUS_USAGE, "--wall: %s: capacity needs --until", name);
+    if (endless || said->given & WALL_INSULATED)
+        return message(STATUS_USAGE, "--wall: %s is %s and stores no heat", name, endless ? "endless" : "insulated");
+    if (said->temperature_text && *said->temperature_text != '@') return STATUS_OK;
+    return message(STATUS_USAGE, "--wall: %s has a capacity and needs the temperature at which it begins, %s:%s", name,
+                   name, "temperature=300 for example");
+}
+
 /* Each wall has a temperature, has a power, or is insulated. */
 static int given_walls(const struct given_options *options, const struct bed *bed, const struct walls *walls,
                        struct given *given) {
@@ -92,6 +107,8 @@ static int given_walls(const struct given_options *options, const struct bed *be
                            name, name, name, name);
         given->wall_power[k] = said->power;
         given->insulated[k] = (said->given & WALL_INSULATED) != 0;
+        status = check_capacity(options, bed, walls, k);
+        if (status) return status;
         status = wall_temperature(options, said, name, &given->tables.curve[k], &given->tables.column[k], temperature);
         *temperature += options->zero;
         if (said->given & WALL_POWER && wall_endless(walls, bed, &walls->wall[k]))

@@ -10,8 +10,27 @@
 
 enum { TIMES_MAX = 10000 };
 
-int capacity_option(const char *text, void *capacity) {
-    return quantity_option("--heat-capacity", text, 1e-12, 1e12, capacity);
+#define CAPACITY_LEAST 1e-12 /* [J/(kg K)] */
+
+int capacity_option(const char *text, void *of_spheres) {
+    static const struct curve_axes axes = {CURVE_AXIS_KELVINS, {"c cp c_p capacity", "J/(kg K)"}};
+    struct quantity *capacity = of_spheres;
+    const bool held = strcmp(text, "inf") == 0;
+    const int status = table_option("--heat-capacity", held ? "1" : text, &axes, CAPACITY_LEAST, INFINITY, capacity);
+    if (held) capacity->value = INFINITY;
+    return status;
+}
+
+int melting_option(const char *text, void *time_options) {
+    struct time_options *time = time_options;
+    double value[3] = {0};
+    int n = 0, status = options_numbers("--melting", text, 3, value, &n);
+    if (!status && n < 2) return message(STATUS_USAGE, "--melting: '%.60s' is not T,L or T,L,WIDTH", text);
+    if (!status && !(value[1] > 0))
+        return message(STATUS_USAGE, "--melting: the latent heat, %g J/kg, is not above 0", value[1]);
+    if (!status && !(value[2] >= 0)) return message(STATUS_USAGE, "--melting: the width, %g K, is below 0", value[2]);
+    time->melting = value[0], time->latent = value[1], time->width = value[2];
+    return status;
 }
 
 int density_option(const char *text, void *density) { return quantity_option("--density", text, 1e-12, 1e12, density); }
@@ -21,17 +40,20 @@ int step_option(const char *text, void *step) {
     return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
 }
 
-int time_check(struct time_options *time, struct bed_options *bed) {
+int time_check(struct time_options *time, double zero, struct bed_options *bed) {
     const struct quantity *c = &time->capacity, *rho = &time->density;
     if (!(time->until > 0)) {
-        const char *needs = c->given         ? "--heat-capacity"
-                            : rho->given     ? "--density"
-                            : time->times    ? "--times"
-                            : time->step > 0 ? "--step"
-                                             : NULL;
+        const char *needs = c->given           ? "--heat-capacity"
+                            : rho->given       ? "--density"
+                            : time->times      ? "--times"
+                            : time->step > 0   ? "--step"
+                            : time->latent > 0 ? "--melting"
+                                               : NULL;
         return needs ? message(STATUS_USAGE, "%s needs --until", needs) : STATUS_OK;
     }
     if (!c->given) return message(STATUS_USAGE, "--until needs --heat-capacity");
+    if (time->latent > 0 && !(time->melting + zero - time->width / 2 > 0))
+        return message(STATUS_USAGE, "--melting: %g less half of the width is not above absolute zero", time->melting);
     if (!rho->given) return message(STATUS_USAGE, "--until needs --density");
     if (time->times && strncmp(time->times, "every:", 6) == 0) {
         const int status = options_number("--times every", time->times + 6, 1 / SECONDS_MAX, SECONDS_MAX, &time->every);
@@ -40,7 +62,9 @@ int time_check(struct time_options *time, struct bed_options *bed) {
             return message(STATUS_USAGE, "--times: more than %d times", TIMES_MAX);
         time->times = NULL;
     }
+    time->capacity.some = true; /* infinite capacities may be in a column */
     bed_options_quantity(bed, &time->capacity, "J/(kg K)");
+    time->capacity.some = false;
     bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
 }
@@ -65,7 +89,14 @@ struct time_run {
     size_t points;
     bool failed; /* memory for points ran out */
     struct table_excess excess[TABLES];
-    double lag; /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
+    double lag;                       /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
+    double *specific;                 /* [spheres] heat capacities [J/(kg K)] */
+    fibrad_store *store;              /* tables and latent heats of spheres; NULL: none */
+    uint32_t *store_of;               /* [spheres] */
+    double *melted, *stored, *gained; /* [spheres] of the span; [J]; [J] since the beginning */
+    double wall_capacity[WALLS_MAX],
+        wall_power[WALLS_MAX]; /* [J/K]; for powers at one time: NaN where heat is stored */
+    double held_energy;        /* gained by held spheres since the beginning [J] */
 };
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
@@ -147,23 +178,61 @@ static int find_times(const struct heat *h, struct span_end **ends, size_t *coun
     return STATUS_OK;
 }
 
-/* Heat capacities of the spheres [J/K]. */
+/* What spheres of each type store, or what each sphere stores if capacities are in a column. */
+static int make_stores(struct time_run *m) {
+    static const double everywhere = 1;
+    const struct time_options *o = &m->heat->time;
+    const bool each = o->capacity.column && !o->capacity.types;
+    const uint32_t n = m->heat->bed->n, types = o->capacity.types ? (uint32_t)o->capacity.types : 1;
+    m->span.stores = each ? n : types;
+    m->span.store = m->store = calloc(m->span.stores + (size_t)1, sizeof *m->store);
+    m->span.store_of = m->store_of = calloc(n + (size_t)1, sizeof *m->store_of);
+    m->melted = calloc(n + (size_t)1, sizeof *m->melted);
+    if (!m->store || !m->store_of || !m->melted) return message_memory();
+    m->span.melted = o->latent > 0 ? m->melted : NULL;
+    for (uint32_t k = 0; k < m->span.stores; ++k) {
+        const struct curve *curve = each ? NULL : &o->capacity.curve[k];
+        m->store[k] =
+            (fibrad_store){.melting = o->melting + m->heat->given.zero, .latent = o->latent, .width = o->width};
+        if (curve && curve->n > 0)
+            m->store[k].rows = (uint32_t)curve->n, m->store[k].temperature = curve->x, m->store[k].capacity = curve->y;
+    }
+    for (uint32_t i = 0; i < n; ++i) {
+        m->store_of[i] = each ? i : (uint32_t)quantity_item(&o->capacity, m->heat->bed, i);
+        fibrad_store *store = &m->store[m->store_of[i]];
+        const double low = store->melting - o->width / 2, above = m->span.temperature[i] - low;
+        m->melted[i] = o->width > 0 ? fmin(fmax(above / o->width, 0), 1) : above > 0;
+        if (store->rows == 0 && m->specific[i] < INFINITY)
+            store->rows = 1, store->temperature = &everywhere, store->capacity = &m->specific[i];
+    }
+    return STATUS_OK;
+}
+
+/* Heat capacities of the spheres [J/K], or masses [kg] if there are stores. */
 static int find_capacities(struct time_run *m, double **capacity) {
     struct heat *h = m->heat;
     const char *file = h->options.name;
     double *density = NULL;
-    int status = quantity_values(&h->time.capacity, h->bed, file, "heat capacity", 0, 1e-12, 1e12, capacity);
+    int status =
+        quantity_values(&h->time.capacity, h->bed, file, "heat capacity", 0, CAPACITY_LEAST, INFINITY, &m->specific);
     if (!status) status = quantity_values(&h->time.density, h->bed, file, "density", 0, 1e-12, 1e12, &density);
-    if (!status) warn_matter(&h->options.warned, h->bed, *capacity, density);
+    if (!status) warn_matter(&h->options.warned, h->bed, m->specific, density);
+    if (!status && (h->time.latent > 0 || quantity_curves(&h->time.capacity))) status = make_stores(m);
+    if (!status) *capacity = malloc((h->bed->n + (size_t)1) * sizeof **capacity);
+    if (!status && !*capacity) status = message_memory();
     for (uint32_t i = 0; i < h->bed->n && !status; ++i) {
         if (!(m->span.temperature[i] > 0))
             status =
                 message_at(STATUS_INPUT, file, h->bed->line[i],
                            "the temperature is %g K; the initial temperature must be above 0", m->span.temperature[i]);
-        const double r = h->bed->r[i] * h->bed->metres, store = (*capacity)[i] * density[i];
-        if (h->conductivity) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * h->conductivity[i]));
-        (*capacity)[i] = h->clumps.area ? store * heat_volume(h, i) * gsl_pow_3(h->bed->metres)
-                                        : store * (4. / 3 * M_PI) * gsl_pow_3(r);
+        const double r = h->bed->r[i] * h->bed->metres, store = m->specific[i] * density[i];
+        const bool held = isinf(store);
+        if (h->conductivity && !held) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * h->conductivity[i]));
+        (*capacity)[i] = m->store && !held ? density[i] : store;
+        if (h->clumps.area)
+            (*capacity)[i] *= heat_volume(h, i) * gsl_pow_3(h->bed->metres);
+        else
+            (*capacity)[i] = (*capacity)[i] * (4. / 3 * M_PI) * gsl_pow_3(r);
     }
     free(density);
     return status;
@@ -183,7 +252,8 @@ static fibrad_heat_config choose_beams(struct time_run *m) {
         m->span.law = &m->law;
         alone = true;
     }
-    for (uint32_t k = 0; k < h->walls.count; ++k) alone = alone || isnan(h->sources.wall_temperature[k]);
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        alone = alone || isnan(h->sources.wall_temperature[k]) || m->wall_capacity[k] > 0;
     if (config.points == 0 && !alone) config.points = POINTS_CORRECTED;
     return config;
 }
@@ -194,10 +264,19 @@ static int library_status(struct time_run *m, int status) {
     fibrad_bed_describe(h->made, NULL, &fault);
     const int refused = contacts_refuse(&h->touching, &h->options, h->bed, &h->walls, status, &fault);
     if (refused) return refused;
+    const double time = m->points > 0 ? m->point[m->points - 1].time : m->now;
+    if (status == FIBRAD_E_ARGUMENT && fault.why == FIBRAD_WHY_TEMPERATURE && m->store) {
+        const fibrad_store *store = &m->store[m->store_of[fault.first]];
+        progress_stop(&h->options.progress);
+        return message_at(STATUS_INPUT, h->options.name, h->bed->line[fault.first],
+                          "after %g s the temperature of sphere %lld is outside of the table of --heat-capacity, %g to "
+                          "%g K",
+                          time, (long long)bed_name(h->bed, fault.first), store->temperature[0],
+                          store->temperature[store->rows - 1]);
+    }
     if (status != FIBRAD_E_UNSOLVABLE) return bed_options_status(&h->options, h->bed, status, &fault);
     progress_stop(&h->options.progress);
-    return message_at(STATUS_INPUT, h->options.name, 0, "after %g s no step keeps all temperatures above 0 K%s",
-                      m->points > 0 ? m->point[m->points - 1].time : m->now,
+    return message_at(STATUS_INPUT, h->options.name, 0, "after %g s no step keeps all temperatures above 0 K%s", time,
                       h->time.step > 0 ? "; --step auto takes shorter steps" : "");
 }
 
@@ -234,6 +313,9 @@ static int show_triangles(struct time_run *m) {
 static int solve_state(struct time_run *m, fibrad_heat_sources *shown) {
     struct heat *h = m->heat;
     *shown = m->sources;
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        m->wall_power[k] = m->wall_capacity[k] > 0 || !shown->wall_power ? NAN : shown->wall_power[k];
+    shown->wall_power = m->wall_power;
     film_at(h, m->now, m->now);
     shown->temperature = m->span.temperature;
     heat_follow(h, shown->temperature, m->wall, h->emissivity, NULL);
@@ -257,17 +339,17 @@ static int write_state(struct time_run *m) {
     for (uint32_t i = 0; i < h->bed->n; ++i)
         h->result.temperature_error[i] = NAN; /* this solution has not found them */
     if (isnan(h->given.surroundings)) shown.surroundings = NAN;
-    status = heat_write(h, &m->bed, &(struct contents){.time = &m->now, .sources = &shown});
+    status = heat_write(h, &m->bed, &(struct contents){.time = &m->now, .sources = &shown, .melted = m->span.melted});
     ++m->bed.frame;
     return status;
 }
 
 /* Advances the temperatures to another time. */
 static int advance(struct time_run *m, double time) {
-    double wall[WALLS_MAX], surroundings;
+    double wall[WALLS_MAX], ended[WALLS_MAX], surroundings;
     outside_at(m, time, wall, &surroundings);
     m->span.duration = time - m->now;
-    m->span.wall_temperature = wall, m->span.surroundings = &surroundings;
+    m->span.wall_temperature = wall, m->span.surroundings = &surroundings, m->span.wall_end = ended;
     film_at(m->heat, m->now, time);
     const int status = fibrad_bed_advance(m->heat->made, &m->sources, &m->span);
     warn_made(&m->heat->options.warned, m->heat->bed, &m->heat->walls, m->heat->made, m->heat->given.zero == 0);
@@ -277,7 +359,9 @@ static int advance(struct time_run *m, double time) {
     m->error = fmax(m->error, m->span.error);
     for (uint32_t k = 0; k < m->heat->walls.count; ++k) m->energy[k] += m->wall_energy[k];
     m->surroundings_energy += m->span.surroundings_energy, m->gas_energy += m->span.gas_energy;
-    memcpy(m->wall, wall, sizeof wall);
+    m->held_energy += m->span.held_energy;
+    for (uint32_t i = 0; i < m->bed.n; ++i) m->gained[i] += m->stored[i];
+    for (uint32_t k = 0; k < m->heat->walls.count; ++k) m->wall[k] = m->wall_capacity[k] > 0 ? ended[k] : wall[k];
     m->sources.surroundings = surroundings;
     m->now = time;
     return STATUS_OK;
@@ -303,18 +387,23 @@ static int run_spans(struct time_run *m) {
     return status;
 }
 
-static void print_summary(struct time_run *m, const double *before, double seconds) {
+static void print_summary(struct time_run *m, double seconds) {
     struct heat *h = m->heat;
     const struct time_options *o = &h->time;
     struct report *report = &h->options.report;
-    double supplied = 0, stored = 0, exchanged = 0;
+    double supplied = 0, stored = 0, exchanged = 0, melted = 0, mass = 0;
+    bool held = false;
     const struct time_point end = point_of(m, o->until, m->span.temperature);
     for (uint32_t i = 0; i < h->bed->n; ++i) {
-        const double change = m->span.capacity[i] * (m->span.temperature[i] - before[i]);
-        stored += change, exchanged += fabs(change);
+        stored += m->gained[i], exchanged += fabs(m->gained[i]);
         supplied += o->until * m->sources.power[i];
+        if (isinf(m->span.capacity[i]))
+            held = true;
+        else if (m->span.melted)
+            melted += m->span.capacity[i] * m->melted[i], mass += m->span.capacity[i];
     }
-    double balance = stored - supplied + m->surroundings_energy + m->gas_energy;
+    if (held) exchanged += fabs(m->held_energy);
+    double balance = stored - supplied + m->surroundings_energy + m->gas_energy + m->held_energy;
     for (uint32_t k = 0; k < h->walls.count; ++k) balance += m->energy[k];
     bed_options_report(&h->options, h->bed, &h->walls, &h->facts);
     report_value(report, "until_s", o->until, 9);
@@ -339,6 +428,8 @@ static void print_summary(struct time_run *m, const double *before, double secon
     report_value(report, "temperature_max_K", end.most, 6);
     report_value(report, "supplied_J", supplied, 6);
     report_value(report, "stored_J", stored, 6);
+    if (held) report_value(report, "held_J", m->held_energy, 6);
+    if (mass > 0) report_value(report, "melted", melted / mass, 6);
     if (h->given.ambient) report_value(report, "surroundings_J", m->surroundings_energy, 6);
     if (h->films.any) report_value(report, "gas_J", m->gas_energy, 6);
     stream_report(h);
@@ -379,8 +470,8 @@ static void warn_tables(const struct time_run *m) {
     warn_times(warned, "--ambient", &h->given.ambient_curve, h->time.until);
 }
 
-/* Runs a bed from 0 to --until. before [spheres]: room for the initial temperatures. */
-static int run_bed(struct time_run *m, double *before) {
+/* Runs a bed from 0 to --until. */
+static int run_bed(struct time_run *m) {
     struct heat *h = m->heat;
     const double begun = progress_clock();
     const fibrad_heat_config config = choose_beams(m);
@@ -389,7 +480,6 @@ static int run_bed(struct time_run *m, double *before) {
     fibrad_bed_describe(h->made, &h->facts, NULL);
     status = absorb_light(m);
     outside_at(m, 0, m->wall, &m->sources.surroundings);
-    memcpy(before, m->span.temperature, h->bed->n * sizeof *before);
     if (!status) status = run_spans(m);
     progress_stop(&h->options.progress);
     if (!status && h->options.outputs.picture) {
@@ -402,7 +492,7 @@ static int run_bed(struct time_run *m, double *before) {
     if (!status) {
         warn_lag(m);
         warn_tables(m);
-        print_summary(m, before, progress_clock() - begun);
+        print_summary(m, progress_clock() - begun);
     }
     return status;
 }
@@ -410,7 +500,7 @@ static int run_bed(struct time_run *m, double *before) {
 int heat_in_time(struct heat *h) {
     const uint32_t n = h->bed->n;
     fibrad_heat_result *result = &h->result;
-    double *capacity = NULL, *now = malloc(2 * (size_t)n * sizeof *now + 1);
+    double *capacity = NULL, *now = calloc(3 * (size_t)n + 1, sizeof *now);
     if (!now) return message_memory();
     struct time_run m = {
         .heat = h, .bed = *h->bed, .sources = h->sources, .square_metres = h->bed->metres * h->bed->metres};
@@ -418,8 +508,18 @@ int heat_in_time(struct heat *h) {
     m.bed.frame = 0, m.bed.timestep = -1;
     m.sources.sigma *= m.square_metres; /* areas are in the bed's unit of length, powers in watts */
     m.sources.temperature = now, m.sources.wall_temperature = m.wall;
-    m.span = (fibrad_span){
-        .temperature = now, .step = h->time.step, .wall_energy = m.wall_energy, .observe = note_point, .context = &m};
+    m.stored = now + n, m.gained = m.stored + n;
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        m.wall_capacity[k] = h->walls.said[k].capacity;
+        if (m.wall_capacity[k] > 0 && isnan(h->values.wall_power[k])) h->values.wall_power[k] = 0;
+    }
+    m.span = (fibrad_span){.temperature = now,
+                           .step = h->time.step,
+                           .stored = m.stored,
+                           .observe = note_point,
+                           .wall_energy = m.wall_energy,
+                           .wall_capacity = m.wall_capacity,
+                           .context = &m};
     if (h->film.gas_curve.n > 0) {
         m.span.gas = h->films.film && !h->sources.stream ? h->films.end : NULL;
         m.span.wall_gas = h->films.wall_end;
@@ -430,8 +530,12 @@ int heat_in_time(struct heat *h) {
     for (uint32_t k = 0; k < h->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;
     int status = find_capacities(&m, &capacity);
     m.span.capacity = capacity;
-    if (!status) status = run_bed(&m, now + n);
+    if (!status) status = run_bed(&m);
     free(now);
+    free(m.specific);
+    free(m.store);
+    free(m.store_of);
+    free(m.melted);
     free(capacity);
     free(m.point);
     return status;

@@ -4,6 +4,7 @@
 
 #include "simple/bodies.h"
 #include "simple/network.h"
+#include "simple/store.h"
 #include "simple/team.h"
 
 /* What steps in time need (stepper.c, corrected.c). */
@@ -21,18 +22,26 @@ typedef struct fibrad_stepping {
     double *by_patches;               /* [n] powers by patches at the last correction */
     double *wall_power;               /* [walls] powers by factors now */
     double step;                      /* proposed for the next span [s]; 0: none */
-    double *now;                      /* [n] temperatures at the beginning of the step */
-    double *slope;                    /* [n] dT/dt at the end of the last step; at first 0 */
-    double *base;                     /* [n] temperatures at which a stage starts */
-    double *first;                    /* [n] change of temperature in the first stage */
-    double *guess;                    /* [n] temperatures about which Newton's method is linear */
+    /* Heats are those stored for a capacity of 1, without a store the temperatures. */
+    double *now;                      /* [n] heats at the beginning of the step */
+    double *slope;                    /* [n] dheat/dt at the end of the last step; at first 0 */
+    double *base;                     /* [n] heats at which a stage starts */
+    double *first;                    /* [n] change of heat in the first stage */
+    double *heat, *guess;             /* [n] heats and temperatures about which Newton's method is linear */
     double *given, *storage, *source; /* [n] the linear problem: temperatures (NaN: unknown), storage, powers */
     double *allowed;                  /* [n] power that a sphere may miss in the solution of the linear problem */
     double *found, *power;            /* [n] temperatures and powers of the linear problem */
-    double *solution;                 /* [n] temperatures of the stage, which keep the energy */
+    double *solution;                 /* [n] heats of the stage, which keep the energy */
+    double *warmth;                   /* [n] temperatures of `now` */
     double *conducts;                 /* [n] what contacts and films conduct from a sphere for each kelvin [W/K] */
     double *gas, *wall_gas;           /* [n], [walls] temperatures of the gas at films in a stage [K] */
-    double *wall_stage;               /* [4 walls] temperatures, powers of each stage, energies of the span */
+    /* [walls] of walls with a capacity: temperatures at the beginning of the step, where a stage starts, and found */
+    double *wall_now, *wall_base, *wall_found;
+    double *wall_given;             /* [walls] given powers [W] */
+    double *wall_film, *wall_mixed; /* [walls] films that stand for capacities, and other films [W/K]; their gas [K] */
+    double *wall_convected;         /* [walls] through these films [W] */
+    double *wall_seen;              /* [walls] temperatures that a law sees */
+    double *wall_stage;             /* [4 walls] temperatures, powers of each stage, energies of the span */
 } fibrad_stepping;
 
 struct fibrad_bed {

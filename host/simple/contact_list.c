@@ -143,19 +143,20 @@ static struct gas_pair gas_of(const fibrad_contact_list *list, const fibrad_cont
 }
 
 /* What the spot of contact k conducts. */
-static double spot_conductance(const fibrad_contact_list *list, const double *solid, uint32_t k) {
+static double spot_conductance(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
+                               uint32_t k) {
     const double first = solid[list->first[k]];
-    if (isinf(list->other[k])) return 4 * first * list->spot[k];
-    return 4 * list->spot[k] / (1 / first + 1 / solid[list->second[k]]);
+    if (isinf(list->other[k]) && rule->wall == 0) return 4 * first * list->spot[k];
+    return 4 * list->spot[k] / (1 / first + 1 / (isinf(list->other[k]) ? rule->wall : solid[list->second[k]]));
 }
 
 int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
                             const double *gas, double *conductance) {
-    if (!list || !rule || (list->n > 0 && (!solid || !conductance))) return FIBRAD_E_ARGUMENT;
+    if (!list || !rule || !(rule->wall >= 0) || (list->n > 0 && (!solid || !conductance))) return FIBRAD_E_ARGUMENT;
     for (uint32_t k = 0; k < list->n; ++k) {
         const double first = solid[list->first[k]], second = isinf(list->other[k]) ? 1 : solid[list->second[k]];
         if (!(first > 0 && second > 0) || (gas && !(gas[k] >= 0))) return FIBRAD_E_ARGUMENT;
-        conductance[k] = list->spot[k] > 0 ? spot_conductance(list, solid, k) : 0;
+        conductance[k] = list->spot[k] > 0 ? spot_conductance(list, rule, solid, k) : 0;
         if (!gas || !(rule->gas_reach > 0) || gas[k] == 0) continue;
         const struct gas_pair pair = gas_of(list, rule, solid, gas, k);
         conductance[k] += gas_conductance(&pair, rule->gas_reach);

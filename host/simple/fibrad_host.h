@@ -326,12 +326,36 @@ int fibrad_bed_shine(fibrad_bed *bed, const fibrad_light_sources *sources, fibra
  *            temperature[spheres]: [K] at that time */
 typedef void fibrad_observe(void *context, double time, const double *temperature);
 
+/* What a material stores: a heat capacity that follows the temperature, and a latent heat. Zeroed: 1 at all
+ * temperatures. In a table of several rows no temperature may leave the range of the rows. */
+typedef struct fibrad_store {
+    const double *temperature; /* K, [rows], ascending; NULL if rows is 0 */
+    const double *capacity;    /* J/(kg K), [rows], above 0 to FIBRAD_CAPACITY_MAX, linear in between */
+    uint32_t rows;             /* 0: the capacity is 1; 1: it is constant */
+    double melting;            /* K, above 0: in the middle of the range in which the material melts */
+    double latent;             /* J/kg, above 0 to FIBRAD_CAPACITY_MAX, of all that melts; 0: nothing melts */
+    double width;              /* K, of this range, in which the melted fraction grows evenly; 0: melting point */
+} fibrad_store;
+
 /* A span of time. Times are in seconds if powers are in watts and capacities in J/K. Set temperature, capacity and
- * duration. The other fields may be zeroed. */
+ * duration. The other fields may be zeroed.
+ *
+ * With `store` the field `capacity` has masses in kg. `melted` then keeps how much of a sphere has melted, from one
+ * span to the next. A sphere of infinite capacity is held: its temperature stays. held_energy is what held spheres
+ * gain, by their powers, too.
+ *
+ * A wall with a capacity has a temperature that is found: sources->wall_temperature is that at the beginning, and the
+ * wall may have a power. Such a wall is not endless or insulated, and its sides have no temperatures of their own. */
 typedef struct fibrad_span {
     double *temperature;    /* K, [spheres], above 0 to FIBRAD_TEMPERATURE_MAX; in: at the beginning; out: at the end */
-    const double *capacity; /* J/K, [spheres], above 0 to FIBRAD_CAPACITY_MAX */
+    const double *capacity; /* J/K, or kg with `store`, [spheres], above 0 to FIBRAD_CAPACITY_MAX, or infinity */
     double duration;        /* s, above 0 to FIBRAD_DURATION_MAX */
+    const fibrad_store *store; /* [stores]; NULL: heat capacities are constant */
+    const uint32_t *store_of;  /* [spheres], indices of stores; NULL: all 0 */
+    uint32_t stores;           /* number of stores */
+    double *melted; /* [spheres], 0 to 1; in: at the beginning, NaN: by the temperature; out: at the end; may be NULL */
+    const double *wall_capacity;    /* J/K, [walls], 0 to FIBRAD_CAPACITY_MAX; NULL: all 0, walls store nothing */
+    double *wall_end;               /* K, [walls], out: temperatures at the end; may be NULL */
     const double *wall_temperature; /* K, [walls], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
@@ -344,6 +368,8 @@ typedef struct fibrad_span {
     double *wall_energy;          /* J, [walls], out: gained during the span; may be NULL */
     double surroundings_energy;   /* J, out: gained during the span */
     double gas_power, gas_energy; /* W and J, out: the same of the gas of all films */
+    double held_energy;           /* J, out: gained by held spheres during the span */
+    double *stored;               /* J, [spheres], out: heat stored during the span; of held spheres 0; may be NULL */
     fibrad_law *law;              /* called in each stage; NULL: emissivities are constant */
     fibrad_observe *observe;      /* NULL: none */
     void *context;                /* handed to observe */
@@ -354,15 +380,15 @@ typedef struct fibrad_span {
     uint64_t corrections;         /* out: solutions by patches that correct factors */
 } fibrad_span;
 
-/* Advances the temperatures of spheres by a span of time: C dT/dt = power + net power, C being the heat capacity of a
- * sphere [J/K]. The scheme is implicit (SDIRK), of second order and L-stable: small spheres among large ones do not
+/* Advances the temperatures of spheres by a span of time: dH/dt = power + net power, H being the heat that a sphere
+ * stores [J]. The scheme is implicit (SDIRK), of second order and L-stable: small spheres among large ones do not
  * limit the step. The energy that spheres lose is what walls, surroundings and gas gain, to rounding. The first
  * automatic step of a span is as long as the last span has proposed.
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * if there are contacts, films or clumps, or if the temperature of a wall is to be found. The members of a clump begin
- * at one temperature.
+ * if there are contacts, films or clumps, or if the temperature of a wall is to be found, as that of a wall with a
+ * capacity. The members of a clump begin at one temperature, equally melted, and have the same store.
  *
  *   field of sources                    use
  *   temperature, storage, reference     not used
@@ -377,7 +403,8 @@ typedef struct fibrad_span {
  *
  *   Input    sources: begin with fibrad_heat_sources_init
  *   Output   span: temperature, and the fields marked "out"
- *   Errors   _ARGUMENT: fibrad_bed_describe has the sphere at fault
+ *   Errors   _ARGUMENT: fibrad_bed_describe has the sphere at fault. With FIBRAD_WHY_TEMPERATURE its temperature is out
+ *            of range, or has left the table of its store.
  *            _UNSOLVABLE: a sphere would fall below 0 K
  *            as fibrad_bed_factors or fibrad_bed_solve
  *   Cost     two or three solutions per step; with factors some milliseconds each for 1e4 spheres
@@ -402,6 +429,7 @@ typedef struct fibrad_contact_rule {
     double gas_reach; /* thickness of the gas that conducts about the smaller sphere, in its radii, 0 to 1; 0: no gas */
     double gas_jump;  /* L, is added to gaps, since narrow gaps conduct less; 0 or more */
     double gas_least; /* L, least gap that counts, above 0; 0: 1e-7 of the smaller radius */
+    double wall;      /* conductivity of walls at spots, in the unit of that of spheres; 0: infinite */
     int gas_alone;    /* 1: lines lead through gas alone, not through solid; for spheres that conduct themselves */
 } fibrad_contact_rule;
 
@@ -422,16 +450,13 @@ typedef struct fibrad_contact_list {
  *   Cost     0.5 microseconds for each sphere within reach */
 int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list);
 
-/* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and 4 k_i a to a
- * wall. Gas conducts along lines parallel to the line of centres, out to where the surface of one sphere leaves the gas
- * about the other one.
- *   Input    solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0
- *            gas[n]: conductivities of the gas at each contact; NULL: no gas conducts
- *            Both are in the unit of fibrad_heat_sources.conductivity.
- *   Output   conductance[n]: in the unit of fibrad_heat_sources.conductance
- *   Errors   _ARGUMENT
- *   Cost     1 microsecond for each contact with gas
- *   Source   docs/methods.md section 28 */
+/* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and to a wall of
+ * the conductivity k_j, too. To a wall of infinite conductivity it conducts 4 k_i a. Gas conducts along lines parallel
+ * to the line of centres, out to where the surface of one sphere leaves the gas about the other one. Input
+ * solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0 gas[n]: conductivities of
+ * the gas at each contact; NULL: no gas conducts Both are in the unit of fibrad_heat_sources.conductivity. Output
+ * conductance[n]: in the unit of fibrad_heat_sources.conductance Errors   _ARGUMENT Cost     1 microsecond for each
+ * contact with gas Source   docs/methods.md section 28 */
 int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
                             const double *gas, double *conductance);
 

@@ -90,8 +90,9 @@ typedef struct fibrad_triangles fibrad_triangles;
         OF(beam_rule), OF(cast_rule), OF(cast_means), OF(occupancy), OF(flow), OF(matrix_rule), OF(factors),           \
         OF(exchange_rule), OF(heat_config), OF(stream), OF(heat_sources), OF(heat_result), OF(light), OF(light_ends),  \
         OF(light_ray), OF(light_hits), OF(light_sources), OF(light_result), OF(run), OF(bed_rule), OF(bed_matrix),     \
-        OF(warning), OF(law), OF(span), OF(wall_row), OF(triangles), OF(triangle_hit), OF(side_view), OF(plane),       \
-        OF(cylinder), OF(wall_rule), OF(contact_rule), OF(contact_list), OF(displacement_rule), OF(displacement)
+        OF(warning), OF(law), OF(store), OF(span), OF(wall_row), OF(triangles), OF(triangle_hit), OF(side_view),       \
+        OF(plane), OF(cylinder), OF(wall_rule), OF(contact_rule), OF(contact_list), OF(displacement_rule),             \
+        OF(displacement)
 #define OF(name)                                                                                                       \
     { "fibrad_" #name, sizeof(fibrad_##name) }
 

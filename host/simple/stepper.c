@@ -10,8 +10,15 @@
  * dE/dT). Temperatures then follow from the powers q of that solution. The energy that the sum over spheres misses is
  * divided among them. So spheres lose what walls and surroundings gain, whatever the tolerance of the solution. The
  * embedded solution of first order differs by g h |f(T') - f(T1)|. This difference is kept below the tolerance; the
- * errors of second order add up to about the tolerance. docs/methods.md section 23. */
+ * errors of second order add up to about the tolerance. docs/methods.md section 23.
+ *
+ * With a store the heat u for a capacity of 1 is in the place of T, and T follows from u: C (u - base)/(g h) = power +
+ * q(T(u)), storage = C du/dT/(g h dE/dT). A sphere that melts at one temperature has du/dT = infinity. Its temperature
+ * is then given in the linear problem, and u follows from q. If u leaves the melting range, the next guess is the heat
+ * u of the linear problem, not that of its temperature. A wall with the capacity C gives off power + C (base - T)/(g
+ * h), which is a film of gas at the temperature base. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "simple/bed.h"
@@ -24,7 +31,8 @@
 #define GROWTH    5.0  /* largest ratio of a step to the last one */
 #define SAFETY    0.9
 #define SMALLEST  1e-12 /* shortest step over the span */
-enum { NEWTON_MAX = 40 };
+#define ROUNDING  1e-9  /* of temperatures at the ends of a table */
+enum { NEWTON_MAX = 40, HALVED = 10 };
 
 struct stepper {
     fibrad_bed *bed;
@@ -35,11 +43,29 @@ struct stepper {
     fibrad_heat_sources sources; /* of the linear problem of a stage */
     fibrad_stream stream;        /* of the sources */
     fibrad_heat_result result;
-    double *stage_walls[2], to_surroundings[2],
-        to_gas[2]; /* powers of walls [walls], surroundings, gas in each stage */
+    double *stage_walls[2], to_surroundings[2], to_gas[2],
+        to_held[2];            /* powers of walls [walls], surroundings, gas, held spheres in each stage */
+    fibrad_sections *sections; /* [span->stores] */
 };
 
 static double power_of(const struct stepper *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
+
+static bool is_held(const struct stepper *m, uint32_t i) { return m->span->capacity[i] == INFINITY; }
+
+static bool wall_stores(const struct stepper *m, uint32_t b) {
+    return m->span->wall_capacity && m->span->wall_capacity[b] > 0;
+}
+
+/* What sphere i is like at a heat, and the heat that it has at a temperature. */
+static fibrad_stored stored_at(const struct stepper *m, uint32_t i, double heat) {
+    if (!m->sections) return (fibrad_stored){heat, 1, 0};
+    return fibrad_sections_at(&m->sections[m->span->store_of ? m->span->store_of[i] : 0], heat);
+}
+
+static double heat_at(const struct stepper *m, uint32_t i, double temperature, double melted) {
+    if (!m->sections) return temperature;
+    return fibrad_sections_heat(&m->sections[m->span->store_of ? m->span->store_of[i] : 0], temperature, melted);
+}
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
@@ -48,13 +74,15 @@ static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
-        m->t->wall_stage[b] = span->wall_temperature
+        m->t->wall_stage[b] = wall_stores(m, b) ? NAN
+                              : span->wall_temperature
                                   ? share_between(m->given->wall_temperature[b], span->wall_temperature[b], share)
                                   : m->given->wall_temperature[b];
     for (uint32_t i = 0; span->gas && i < m->bed->facts.spheres; ++i)
         m->t->gas[i] = share_between(m->given->gas[i], span->gas[i], share);
-    for (uint32_t b = 0; span->wall_gas && b < m->bed->facts.walls; ++b)
-        m->t->wall_gas[b] = share_between(m->given->wall_gas[b], span->wall_gas[b], share);
+    for (uint32_t b = 0; m->given->wall_gas && b < m->bed->facts.walls; ++b)
+        m->t->wall_gas[b] =
+            span->wall_gas ? share_between(m->given->wall_gas[b], span->wall_gas[b], share) : m->given->wall_gas[b];
     if (span->inlet) m->stream.inlet = share_between(m->given->stream->inlet, *span->inlet, share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
@@ -64,7 +92,9 @@ static void set_outside(struct stepper *m, double time) {
 static void set_surfaces(struct stepper *m) {
     const fibrad_stepping *t = m->t;
     const fibrad_law *law = m->span->law;
-    if (law) law->follow(law->context, t->guess, t->wall_stage, t->emissivity, t->wall_emissivity);
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
+        t->wall_seen[b] = wall_stores(m, b) ? t->wall_found[b] : t->wall_stage[b];
+    if (law) law->follow(law->context, t->guess, t->wall_seen, t->emissivity, t->wall_emissivity);
 }
 
 /* The spheres of body b: the members of a clump, or one. */
@@ -93,61 +123,120 @@ static void find_conducts(struct stepper *m) {
     }
 }
 
-/* Makes the linear problem about t->guess. A sphere that exchanges no heat has no part in it. */
+/* Makes the linear problem about t->guess. A sphere that exchanges no heat has no part in it. The temperature of a
+ * sphere that is held, or melts at one temperature, is given. */
 static void linearise(struct stepper *m, double length) {
     fibrad_stepping *t = m->t;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double at = t->guess[i], rate = m->span->capacity[i] / length;
-        const bool reflects = stands_alone(m, i);
-        t->given[i] = reflects ? at : NAN;
-        t->storage[i] = reflects ? 0 : rate / (4 * m->given->sigma * at * at * at);
-        t->source[i] = reflects ? 0 : power_of(m, i) + rate * (t->base[i] - at);
-        t->allowed[i] = SOLVED * m->tolerance * rate * at;
+        const double at = t->guess[i], slope = stored_at(m, i, t->heat[i]).capacity;
+        const double rate = m->span->capacity[i] / length;
+        const bool fixed = stands_alone(m, i) || is_held(m, i) || slope == INFINITY;
+        t->given[i] = fixed ? at : NAN;
+        t->storage[i] = fixed ? 0 : rate * slope / (4 * m->given->sigma * at * at * at);
+        t->source[i] = fixed ? 0 : power_of(m, i) + rate * (t->base[i] - t->heat[i]);
+        t->allowed[i] = SOLVED * m->tolerance * rate * slope * at;
+    }
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) {
+        const double own = m->given->wall_film ? m->given->wall_film[b] : 0;
+        const double rate = wall_stores(m, b) ? m->span->wall_capacity[b] / length : 0;
+        t->wall_film[b] = own + rate;
+        t->wall_mixed[b] = rate > 0 ? (own * t->wall_gas[b] + rate * t->wall_base[b]) / (own + rate) : t->wall_gas[b];
     }
 }
 
-/* Takes the solution of the linear problem. t->solution gets the temperatures that keep the energy, t->guess those
- * about which Newton's method goes on. Returns whether the two agree. */
-static bool accept_solution(struct stepper *m, double length) {
+/* The heat that sphere i has gained, over its capacity. In a clump all is gained together. */
+static double gained(const struct stepper *m, uint32_t i, double length) {
+    const fibrad_bodies *bodies = m->bed->bodies;
+    double power = 0, capacity = 0;
+    uint32_t count;
+    const uint32_t b = bodies ? bodies->body[i] : i, *member = members_of(m, &b, &count);
+    for (uint32_t k = 0; k < count; ++k)
+        power += power_of(m, member[k]) + m->t->power[member[k]], capacity += m->span->capacity[member[k]];
+    return length * power / capacity;
+}
+
+/* Takes the solution of the linear problem. t->solution gets the heats that keep the energy, t->heat and t->guess those
+ * about which Newton's method goes on. Returns whether the two agree. halved: heats of what melts go half the way. */
+static bool accept_solution(struct stepper *m, double length, bool halved) {
     fibrad_stepping *t = m->t;
     bool agree = true;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double at = t->guess[i], warmed = t->base[i] + length * power_of(m, i) / m->span->capacity[i];
-        const bool reflects = stands_alone(m, i);
-        const double found = reflects ? warmed : t->found[i], ratio = found / at;
-        t->solution[i] = reflects ? warmed : at + 0.25 * at * (ratio * ratio * ratio * ratio - 1);
-        t->guess[i] = found > at / 2 ? found : at / 2;
-        agree = agree && t->guess[i] == found && fabs(found - t->solution[i]) <= SOLVED * m->tolerance * found;
+        const double at = t->guess[i], last = t->heat[i], capacity = m->span->capacity[i], ratio = t->found[i] / at;
+        const double warmed = t->base[i] + length * power_of(m, i) / capacity;
+        const fibrad_stored from = stored_at(m, i, last);
+        const bool alone = stands_alone(m, i), melts = from.capacity == INFINITY;
+        t->solution[i] = is_held(m, i)    ? last
+                         : alone          ? warmed
+                         : !melts         ? last + from.capacity * (0.25 * at * (ratio * ratio * ratio * ratio - 1))
+                         : m->bed->bodies ? t->base[i] + gained(m, i, length)
+                                          : warmed + length * t->power[i] / capacity;
+        const fibrad_stored to = stored_at(m, i, t->solution[i]);
+        const double found = alone ? to.temperature : t->found[i], near = found > at / 2 ? found : at / 2;
+        agree = agree && near == found && fabs(found - to.temperature) <= SOLVED * m->tolerance * found;
+        if (melts || to.melted != from.melted) {
+            const double next = larger_of(t->solution[i], last / 2);
+            t->heat[i] = halved ? (next + last) / 2 : next;
+            t->guess[i] = stored_at(m, i, t->heat[i]).temperature;
+        } else {
+            t->guess[i] = near, t->heat[i] = heat_at(m, i, near, NAN);
+        }
     }
     return agree;
 }
 
+/* Takes the temperatures of walls with a capacity. What their films convect is what they and their gas gain. */
+static void accept_walls(struct stepper *m, double length) {
+    fibrad_stepping *t = m->t;
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) {
+        if (!wall_stores(m, b)) continue;
+        t->wall_found[b] = t->wall_mixed[b] - t->wall_convected[b] / t->wall_film[b];
+        const double stored = m->span->wall_capacity[b] / length * (t->wall_found[b] - t->wall_base[b]);
+        m->result.wall_power[b] = stored - t->wall_given[b], m->result.gas_power -= stored;
+    }
+}
+
 /* Makes temperatures agree with powers. A slow sphere takes all of the energy that it misses. A fast one, which follows
- * its neighbours at once, takes little of it. The energy still missing warms all spheres alike. */
+ * its neighbours at once, takes little of it. The energy still missing warms all spheres alike, or walls if all are
+ * held. */
 static void balance_energy(struct stepper *m, double length) {
     fibrad_stepping *t = m->t;
-    double left = -m->result.surroundings_power - m->result.gas_power, capacity = 0;
+    double left = -m->result.surroundings_power - m->result.gas_power, capacity = 0, of_walls = 0;
     const uint32_t bodies = m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
-    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) left -= m->result.wall_power[b];
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) {
+        left -= m->result.wall_power[b];
+        if (wall_stores(m, b)) of_walls += m->span->wall_capacity[b];
+    }
     for (uint32_t b = 0; b < bodies; ++b) {
-        double missing = 0, stiff = 0;
+        double missing = 0, stiffness = 0;
         uint32_t count;
         const uint32_t *member = members_of(m, &b, &count);
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t i = member[k];
-            const double rate = m->span->capacity[i] / length, at = t->solution[i];
-            missing += power_of(m, i) + t->power[i] - rate * (at - t->base[i]);
-            stiff +=
-                rate + (4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i]);
+            const fibrad_stored to = stored_at(m, i, t->solution[i]);
+            const double rate = m->span->capacity[i] / length, at = to.temperature;
+            const double stiff =
+                4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
+            missing += power_of(m, i) + t->power[i] - rate * (t->solution[i] - t->base[i]);
+            stiffness += rate + stiff / to.capacity;
         }
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t i = member[k];
-            t->solution[i] += missing / stiff;
+            if (is_held(m, i)) {
+                left -= t->power[i];
+                continue;
+            }
+            t->solution[i] += missing / stiffness;
             left += power_of(m, i) - m->span->capacity[i] / length * (t->solution[i] - t->base[i]);
             capacity += m->span->capacity[i];
         }
     }
-    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) t->solution[i] += left * length / capacity;
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i)
+        if (!is_held(m, i)) t->solution[i] += left * length / capacity;
+    for (uint32_t b = 0; b < m->bed->facts.walls && capacity == 0; ++b) {
+        if (!wall_stores(m, b)) continue;
+        t->wall_found[b] += left * length / of_walls;
+        m->result.wall_power[b] += left * m->span->wall_capacity[b] / of_walls;
+    }
 }
 
 static bool all_positive(const double *values, uint32_t count) {
@@ -169,9 +258,15 @@ static int solve_stage(struct stepper *m, int stage, double time, double length)
         const int status = fibrad_stepping_solve(m->bed, &m->sources, &m->result);
         if (status && status != FIBRAD_E_UNSOLVABLE) return status;
         m->span->sweeps += m->result.sweeps;
-        if (!accept_solution(m, length) || status) continue;
+        accept_walls(m, length);
+        if (!accept_solution(m, length, k >= HALVED) || status) continue;
         balance_energy(m, length);
         m->to_surroundings[stage] = m->result.surroundings_power, m->to_gas[stage] = m->result.gas_power;
+        m->to_held[stage] = 0;
+        for (uint32_t i = 0; i < m->bed->facts.spheres; ++i)
+            if (is_held(m, i)) m->to_held[stage] += power_of(m, i) + t->power[i];
+        for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
+            if (wall_stores(m, b) && !(t->wall_found[b] > 0)) return FIBRAD_E_UNSOLVABLE;
         return all_positive(t->solution, m->bed->facts.spheres) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
     }
     return FIBRAD_E_UNSOLVABLE;
@@ -188,20 +283,30 @@ static int try_step(struct stepper *m, double time, double step, double *error) 
     const double length = GAMMA * step;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         t->base[i] = t->now[i];
-        t->guess[i] = near_to(t->now[i] + length * t->slope[i], t->now[i]);
+        t->heat[i] = is_held(m, i) ? t->now[i] : near_to(t->now[i] + length * t->slope[i], t->now[i]);
+        t->guess[i] = stored_at(m, i, t->heat[i]).temperature;
     }
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) t->wall_base[b] = t->wall_found[b] = t->wall_now[b];
     int status = solve_stage(m, 0, time + length, length);
     if (status) return status;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double change = t->solution[i] - t->now[i];
         t->first[i] = change;
         t->base[i] = t->now[i] + (1 - GAMMA) / GAMMA * change;
-        t->guess[i] = near_to(t->now[i] + change / GAMMA, t->solution[i]);
+        t->heat[i] = near_to(t->now[i] + change / GAMMA, t->solution[i]);
+        t->guess[i] = stored_at(m, i, t->heat[i]).temperature;
     }
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
+        t->wall_base[b] = t->wall_now[b] + (1 - GAMMA) / GAMMA * (t->wall_found[b] - t->wall_now[b]);
     status = solve_stage(m, 1, time + step, length);
     *error = 0;
     for (uint32_t i = 0; i < m->bed->facts.spheres && !status; ++i)
         *error = larger_of(*error, fabs(t->solution[i] - t->base[i] - t->first[i]) / t->solution[i]);
+    for (uint32_t b = 0; b < m->bed->facts.walls && !status; ++b) {
+        const double first = GAMMA / (1 - GAMMA) * (t->wall_base[b] - t->wall_now[b]);
+        if (wall_stores(m, b))
+            *error = larger_of(*error, fabs(t->wall_found[b] - t->wall_base[b] - first) / t->wall_found[b]);
+    }
     return status;
 }
 
@@ -212,12 +317,15 @@ static void accept_step(struct stepper *m, double step, double error) {
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         t->slope[i] = (t->solution[i] - t->base[i]) / (GAMMA * step);
         t->now[i] = t->solution[i];
+        t->warmth[i] = stored_at(m, i, t->now[i]).temperature;
     }
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) t->wall_now[b] = t->wall_found[b];
     for (int stage = 0; stage < 2; ++stage) {
         for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
             span->wall_energy[b] += share[stage] * m->stage_walls[stage][b];
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
         span->gas_energy += share[stage] * m->to_gas[stage];
+        span->held_energy += share[stage] * m->to_held[stage];
     }
     span->error = larger_of(span->error, error);
     ++span->steps, ++t->steps;
@@ -230,11 +338,11 @@ static double first_step(const struct stepper *m) {
     double hottest = m->given->surroundings, step = m->span->duration;
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
         hottest = larger_of(m->given->wall_temperature[b], hottest); /* NaN, not known: hottest stays */
-    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) hottest = larger_of(hottest, t->now[i]);
+    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) hottest = larger_of(hottest, t->warmth[i]);
     const double emission = m->given->sigma * (hottest * hottest) * (hottest * hottest);
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         const double gas = m->given->stream ? m->given->stream->inlet : m->given->film ? m->given->gas[i] : 0;
-        const double film = m->given->film ? m->given->film[i] * (gas - t->now[i]) : 0;
+        const double film = m->given->film ? m->given->film[i] * (gas - t->warmth[i]) : 0;
         const double rate = t->area[i] * m->given->emissivity[i] * emission + fabs(power_of(m, i)) + fabs(film);
         if (rate > 0) step = smaller_of(step, sqrt(m->tolerance) * m->span->capacity[i] * t->now[i] / rate);
     }
@@ -245,9 +353,22 @@ static double first_step(const struct stepper *m) {
 static int compare(struct stepper *m, double time) {
     fibrad_heat_sources now = *m->given;
     set_outside(m, time);
-    now.temperature = m->t->now;
+    now.temperature = m->t->warmth;
     now.wall_temperature = m->t->wall_stage, now.surroundings = m->sources.surroundings;
     return fibrad_stepping_compare(m->bed, &now, &m->span->corrections);
+}
+
+/* Finds a sphere that is beyond the table of its store. Then bed->fault is this sphere. */
+static bool find_beyond(fibrad_bed *bed, const fibrad_span *span, const double *temperature) {
+    for (uint32_t i = 0; i < bed->facts.spheres && span->store; ++i) {
+        const fibrad_store *store = &span->store[span->store_of ? span->store_of[i] : 0];
+        if (store->rows < 2 || (temperature[i] >= store->temperature[0] * (1 - ROUNDING) &&
+                                temperature[i] <= store->temperature[store->rows - 1] * (1 + ROUNDING)))
+            continue;
+        bed->fault = (fibrad_fault){i, i, UINT32_MAX, 0, FIBRAD_WHY_TEMPERATURE};
+        return true;
+    }
+    return false;
 }
 
 /* The next step of a span that begins. */
@@ -276,8 +397,9 @@ static int take_steps(struct stepper *m) {
             continue;
         }
         accept_step(m, step, error);
+        if (find_beyond(m->bed, span, t->warmth)) return FIBRAD_E_ARGUMENT;
         time = parts > 1 ? time + step : span->duration;
-        if (span->observe) span->observe(span->context, time, t->now);
+        if (span->observe) span->observe(span->context, time, t->warmth);
         if (!fixed) next = smaller_of(wanted, larger_of(GROWTH * step, next));
     }
     if (!fixed) t->step = next;
@@ -287,6 +409,28 @@ static int take_steps(struct stepper *m) {
 /* The first member of the clump of a sphere. */
 static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
     return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
+}
+
+/* Whether a sphere stores heat as the first member of its clump, and begins as it. */
+static bool is_like_first(const fibrad_bed *bed, const fibrad_span *span, uint32_t i) {
+    const uint32_t first = first_member(bed, i);
+    return span->temperature[i] == span->temperature[first] &&
+           (span->capacity[i] == INFINITY) == (span->capacity[first] == INFINITY) &&
+           (!span->store_of || span->store_of[i] == span->store_of[first]) &&
+           (!span->melted || span->melted[i] == span->melted[first] ||
+            (isnan(span->melted[i]) && isnan(span->melted[first])));
+}
+
+/* Checks stores, and walls with a capacity. */
+static int check_stores(fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
+    if (!span->store != (span->stores == 0)) return FIBRAD_E_ARGUMENT;
+    for (uint32_t k = 0; k < span->stores; ++k)
+        if (!fibrad_store_valid(&span->store[k])) return FIBRAD_E_ARGUMENT;
+    for (uint32_t b = 0; b < bed->facts.walls && span->wall_capacity; ++b)
+        if (!(span->wall_capacity[b] >= 0 && span->wall_capacity[b] <= FIBRAD_CAPACITY_MAX) ||
+            (span->wall_capacity[b] > 0 && (!(s->wall_temperature[b] > 0) || (s->insulated && s->insulated[b]))))
+            return FIBRAD_E_ARGUMENT;
+    return find_beyond(bed, span, span->temperature) ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
 }
 
 /* Checks a span. bed->fault: the first sphere with an invalid value. */
@@ -299,13 +443,16 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
         (span->law && !span->law->follow))
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < n; ++i) {
+        const double capacity = span->capacity[i];
         const int why = !(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)
                             ? FIBRAD_WHY_TEMPERATURE
-                        : !(span->capacity[i] > 0 && span->capacity[i] <= FIBRAD_CAPACITY_MAX) ? FIBRAD_WHY_CAPACITY
-                        : s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX)                 ? FIBRAD_WHY_POWER
-                        : !(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)                    ? FIBRAD_WHY_EMISSIVITY
-                        : span->temperature[first_member(bed, i)] != span->temperature[i]      ? FIBRAD_WHY_CLUMP_HEAT
-                                                                                               : 0;
+                        : !(capacity > 0 && (capacity <= FIBRAD_CAPACITY_MAX || capacity == INFINITY)) ||
+                                (span->store_of && span->store_of[i] >= span->stores)
+                            ? FIBRAD_WHY_CAPACITY
+                        : s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX) ? FIBRAD_WHY_POWER
+                        : !(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)    ? FIBRAD_WHY_EMISSIVITY
+                        : !is_like_first(bed, span, i)                         ? FIBRAD_WHY_CLUMP_HEAT
+                                                                               : 0;
         if (why) bed->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
         if (why) return FIBRAD_E_ARGUMENT;
     }
@@ -313,8 +460,9 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
     for (uint32_t k = 0; k < s->contacts; ++k)
         if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
     if (s->film && !s->gas && !s->stream) return FIBRAD_E_ARGUMENT;
-    return (span->gas && !s->gas) || (span->wall_gas && !s->wall_gas) || (span->inlet && !s->stream) ? FIBRAD_E_ARGUMENT
-                                                                                                     : FIBRAD_OK;
+    if ((span->gas && !s->gas) || ((span->wall_gas || s->wall_film) && !s->wall_gas) || (span->inlet && !s->stream))
+        return FIBRAD_E_ARGUMENT;
+    return check_stores(bed, s, span);
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
@@ -324,7 +472,7 @@ static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s,
     suffice = suffice && s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
     for (uint32_t b = 0; b < bed->facts.walls; ++b)
         suffice = suffice && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
-                  !(s->insulated && s->insulated[b]);
+                  !(s->insulated && s->insulated[b]) && !(span->wall_capacity && span->wall_capacity[b] > 0);
     return suffice;
 }
 
@@ -336,15 +484,58 @@ static void end_span(const struct stepper *m, fibrad_span *span) {
     *span = *m->span;
     span->wall_energy = given.wall_energy, span->surroundings_power = m->to_surroundings[1];
     span->gas_power = m->to_gas[1];
-    memcpy(span->temperature, t->now, n * sizeof *t->now);
+    for (uint32_t i = 0; i < n; ++i) {
+        const double begun = heat_at(m, i, span->temperature[i], span->melted ? span->melted[i] : NAN);
+        if (span->stored) span->stored[i] = is_held(m, i) ? 0 : m->span->capacity[i] * (t->now[i] - begun);
+        if (span->melted) span->melted[i] = stored_at(m, i, t->now[i]).melted;
+        span->temperature[i] = t->warmth[i];
+    }
     if (span->power) memcpy(span->power, t->power, n * sizeof *t->power);
     for (uint32_t b = 0; b < walls; ++b) {
         if (span->wall_power) span->wall_power[b] = m->stage_walls[1][b];
         if (span->wall_energy) span->wall_energy[b] = m->span->wall_energy[b];
+        if (span->wall_end) span->wall_end[b] = wall_stores(m, b) ? t->wall_now[b] : t->wall_stage[b];
     }
     for (uint32_t i = 0; i < n && span->law && span->law->emissivity; ++i) span->law->emissivity[i] = t->emissivity[i];
     for (uint32_t b = 0; b < walls && span->law && span->law->wall_emissivity; ++b)
         span->law->wall_emissivity[b] = t->wall_emissivity[b];
+}
+
+/* Makes the sections of all stores, in one block, and finds the heats of spheres. */
+static int begin_stores(struct stepper *m, const fibrad_span *span) {
+    fibrad_stepping *t = m->t;
+    const uint32_t n = m->bed->facts.spheres;
+    size_t room = 0;
+    for (uint32_t k = 0; k < span->stores; ++k) room += span->store[k].rows + 3;
+    if (span->stores > 0) m->sections = malloc(span->stores * sizeof *m->sections + room * sizeof(fibrad_section));
+    if (span->stores > 0 && !m->sections) return FIBRAD_E_MEMORY;
+    fibrad_section *section = (fibrad_section *)(m->sections + span->stores);
+    for (uint32_t k = 0; k < span->stores; section += m->sections[k++].n) {
+        m->sections[k].section = section;
+        fibrad_sections_make(&m->sections[k], &span->store[k]);
+    }
+    for (uint32_t i = 0; i < n; ++i) {
+        t->warmth[i] = span->temperature[i];
+        t->now[i] = heat_at(m, i, t->warmth[i], span->melted ? span->melted[i] : NAN);
+    }
+    return FIBRAD_OK;
+}
+
+/* Lets films stand for the capacities of walls. */
+static void begin_walls(struct stepper *m) {
+    fibrad_stepping *t = m->t;
+    const fibrad_heat_sources *s = m->given;
+    bool any = false;
+    for (uint32_t b = 0; b < m->bed->facts.walls; ++b) {
+        const double power = s->wall_power ? s->wall_power[b] : NAN;
+        t->wall_given[b] = wall_stores(m, b) && isnan(power) ? 0 : power;
+        t->wall_now[b] = t->wall_found[b] = s->wall_temperature[b];
+        any = any || wall_stores(m, b);
+    }
+    if (!any) return;
+    m->sources.wall_power = t->wall_given;
+    m->sources.wall_film = t->wall_film, m->sources.wall_gas = t->wall_mixed;
+    m->result.wall_convected = t->wall_convected;
 }
 
 /* Exchange factors pay from the third step at the same positions on. */
@@ -363,25 +554,27 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     m.sources.wall_temperature = t->wall_stage;
     if (span->gas) m.sources.gas = t->gas;
     if (span->wall_gas) m.sources.wall_gas = t->wall_gas;
+    begin_walls(&m);
     if (sources->stream) m.stream = *sources->stream, m.sources.stream = &m.stream;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
-    memcpy(t->now, span->temperature, n * sizeof *t->now);
+    int status = begin_stores(&m, span);
+    if (status) return status;
     t->by_factors = factors_suffice(bed, sources, span) &&
                     (t->network || (double)t->steps + span->duration / next_step(&m) > STEPS_BY_PATCHES);
-    const int status = fibrad_stepping_prepare(bed, sources);
-    if (status) return status;
+    status = fibrad_stepping_prepare(bed, sources);
     if (span->law) {
         memcpy(t->emissivity, sources->emissivity, n * sizeof *t->emissivity);
         for (uint32_t b = 0; b < walls; ++b) t->wall_emissivity[b] = sources->wall_emissivity[b];
         m.sources.emissivity = t->emissivity, m.sources.wall_emissivity = t->wall_emissivity;
     }
-    now.surroundings_energy = now.gas_energy = now.error = 0;
+    now.surroundings_energy = now.gas_energy = now.held_energy = now.error = 0;
     now.steps = now.refused = now.sweeps = now.corrections = 0;
     now.wall_energy = t->wall_stage + 3 * (size_t)walls;
     for (uint32_t b = 0; b < walls; ++b) now.wall_energy[b] = 0;
-    const int ended = take_steps(&m);
-    if (!ended) end_span(&m, span);
-    return ended;
+    if (!status) status = take_steps(&m);
+    if (!status) end_span(&m, span);
+    free(m.sections);
+    return status;
 }
 
 int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_span *span) {
@@ -391,7 +584,7 @@ int fibrad_bed_advance(fibrad_bed *bed, const fibrad_heat_sources *sources, fibr
     status = check_span(bed, sources, span);
     if (!status) status = fibrad_stepping_make(bed);
     if (!status) fibrad_bed_warn_of_sources(bed, sources, span->temperature);
-    if (!status) fibrad_bed_warn_of_stores(bed, span->capacity);
+    if (!status && !span->store) fibrad_bed_warn_of_stores(bed, span->capacity);
     if (!status) status = advance_span(bed, sources, span);
     return fibrad_bed_end(bed, status);
 }

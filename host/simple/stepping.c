@@ -8,12 +8,14 @@
 static int take_arrays(fibrad_bed *bed) {
     fibrad_stepping *t = &bed->stepping;
     const size_t n = bed->facts.spheres, all = bed->facts.walls;
-    double **const of_spheres[] = {&t->area,     &t->emissivity, &t->now,      &t->slope,    &t->base,
-                                   &t->first,    &t->guess,      &t->storage,  &t->source,   &t->found,
-                                   &t->power,    &t->given,      &t->allowed,  &t->solution, &t->correction,
-                                   &t->compared, &t->by_patches, &t->conducts, &t->gas};
-    double **const of_walls[] = {&t->wall_emissivity, &t->wall_correction, &t->wall_compared, &t->wall_power,
-                                 &t->wall_gas,        &t->wall_stage}; /* the last one has four per wall */
+    double **const of_spheres[] = {
+        &t->area,       &t->emissivity, &t->now,        &t->slope,    &t->base,  &t->first,   &t->guess,
+        &t->storage,    &t->source,     &t->found,      &t->power,    &t->given, &t->allowed, &t->solution,
+        &t->correction, &t->compared,   &t->by_patches, &t->conducts, &t->gas,   &t->heat,    &t->warmth};
+    double **const of_walls[] = {&t->wall_emissivity, &t->wall_correction, &t->wall_compared,  &t->wall_power,
+                                 &t->wall_gas,        &t->wall_now,        &t->wall_base,      &t->wall_found,
+                                 &t->wall_given,      &t->wall_film,       &t->wall_convected, &t->wall_seen,
+                                 &t->wall_mixed,      &t->wall_stage}; /* the last one has four per wall */
     const size_t spheres = sizeof of_spheres / sizeof *of_spheres, walls = sizeof of_walls / sizeof *of_walls;
     double *next = calloc(spheres * n + (walls + 3) * all + 1, sizeof *next);
     if (!next) return FIBRAD_E_MEMORY;

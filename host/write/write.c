@@ -12,7 +12,9 @@ const char *contents_wall(const struct contents *what, uint32_t k, char name[WAL
 
 struct contents contents_table(const struct contents *what) {
     struct contents table = *what;
-    if (what->bodies) table.bed = what->bodies, table.result = what->of_bodies, table.area = what->area_of_bodies;
+    if (what->bodies)
+        table.bed = what->bodies, table.result = what->of_bodies, table.area = what->area_of_bodies,
+        table.melted = what->melted_of_bodies;
     return table;
 }
 
@@ -35,6 +37,7 @@ void heat_columns(const struct contents *what, struct heat_column column[HEAT_CO
         {"q_radiation_W", parts, r->conducted, r->convected},
         {"q_conduction_W", r->conducted, NULL, NULL},
         {"q_convection_W", r->convected, NULL, NULL},
+        {"melted", what->melted, NULL, NULL},
         {"area_m2", what->area, NULL, NULL}};
     memcpy(column, all, sizeof all);
 }
@@ -42,7 +45,8 @@ void heat_columns(const struct contents *what, struct heat_column column[HEAT_CO
 const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_NAME], double value[HEAT_COLUMNS]) {
     const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
-    for (int c = 0; c < HEAT_COLUMNS; ++c) value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c == HEAT_AREA ? NAN : 0;
+    for (int c = 0; c < HEAT_COLUMNS; ++c)
+        value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c >= HEAT_MELTED ? NAN : 0;
     if (k == what->walls->count) {
         const fibrad_stream *stream = what->sources->stream;
         value[HEAT_TEMPERATURE] = stream ? stream->gas[stream->slices - 1] : NAN, value[HEAT_TEMPERATURE_ERROR] = NAN;

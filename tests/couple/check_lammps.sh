@@ -343,10 +343,10 @@ run 2 warming moving.lmp hot 1000 steps 4000 capacity "capacity 2e4 contacts 20 
 balance warming 20e-3 0 1e-3 150 "energy of moving particles with contacts and a floor that stores heat"
 
 # ---- contacts -----------------------------------------------------------------------------------------------------------
-# closed EXPLICIT STEPS STEP: temperatures of contacts.lmp by eigenvectors of the chain and differences of pairs: after explicit
-# steps, or in continuous time. The floor counts as ball 14
+# closed EXPLICIT STEPS STEP [LESS]: temperatures of contacts.lmp by eigenvectors of the chain and differences of pairs: after explicit
+# steps, or in continuous time. The floor counts as ball 14, and conducts LESS times less
 closed() {
-    awk -v OFMT=%.17g -v explicit="$1" -v steps="$2" -v step="$3" '
+    awk -v OFMT=%.17g -v explicit="$1" -v steps="$2" -v step="$3" -v floor="${4:-1}" '
         function left(rate) { return explicit ? exp(steps*log(1 - rate*step)) : exp(-rate*step*steps) }
         function mass(r) { return 2500*4/3*pi*r^3*800 } # its heat capacity
         # Hertz, scaled by .9; other 0: a wall
@@ -367,7 +367,7 @@ closed() {
                 print i, sum
             }
             pair(500, 300, big, mass(.3), 2*240*spot(.5, .3, .7), 11)
-            pair(300, 700, big, 1e6, 4*200*spot(.5, 0, .47), 13)
+            pair(300, 700, big, 1e6, 4*200*spot(.5, 0, .47)/floor, 13)
         }'
 }
 # with_floor NAME: temperatures at the end, the floor as ball 14
@@ -393,6 +393,46 @@ done
 # LAMMPS rounds coordinates when it balances
 run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01"
 near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
+
+# ---- gas ----------------------------------------------------------------------------------------------------------------
+# explicit steps of heat: each leaves 1 - h A t/C of the difference
+awk -v OFMT=%.17g 'BEGIN {
+    for (i = 1; i <= 2; i++) print i, 300 + 50*i + (i == 1 ? 550 : 200)*(1 - 25*3/(i == 1 ? .5 : .3)*20/(2500*800))^1000 }' >"$work/cooled"
+for film in "25 d_gas" "d_h v_gas" "v_h type 350 400"; do
+    for np in 1 2; do
+        run $np gas$np film.lmp film "$film"
+        near "$work/cooled" "$work/gas$np.out" 1e-9 "convection $film, np $np, by explicit steps"
+    done
+    cmp "$work/gas1.out" "$work/gas2.out"
+    verdict "convection $film: the same bits" $?
+    awk 'NF == 4 && /^ *[0-9]/ && $1 % 100 == 0 { n++; off = $2 + $3 + $4; if (off*off > 1e-26*$2*$2 || $2 == 0) bad = 1 }
+        END { exit !(n > 20 && !bad) }' "$work/gas2.log"
+    verdict "convection $film: what the gas loses is what balls gain" $?
+done
+echo "fix sums all ave/time 1 1 1 f_rad f_rad[1] f_rad[6] f_rad[14] file $work/sums format ' %.17g'" >"$work/sums.lmp"
+run 2 gas_floor frozen.lmp "${whole[@]}" strict "no convection 5 400" also "include $work/sums.lmp"
+awk '/^[0-9]/ { n++; off = $2 + $3 + $4 + $5; most = $2*$2 + $3*$3 + $4*$4 + $5*$5; if (off*off > 1e-26*most || $5 == 0) bad = 1 }
+    END { exit !(n > 40 && !bad) }' "$work/sums"
+verdict "convection beside radiation" $?
+
+# a floor of two triangles conducts as a plane does
+{
+    printf 'solid floor\n'
+    for corners in "11 -1 0|11 13 0" "11 13 0|-1 13 0"; do
+        printf 'facet normal 0 0 1\nouter loop\nvertex -1 -1 0\nvertex %s\nvertex %s\nendloop\nendfacet\n' "${corners%|*}" "${corners#*|}"
+    done
+    printf 'endsolid floor\n'
+} >"$work/floor.stl"
+for np in 1 2; do
+    run $np contacts_mesh contacts.lmp floor "mesh $work/floor.stl temperature 700 emissivity 0 capacity 1e6 both"
+    with_floor contacts_mesh >"$work/contacts_mesh"
+    near "$work/contacts1" "$work/contacts_mesh" 1e-9 "contacts with a floor of triangles, np $np"
+done
+# a floor of the conductivity of the ball conducts half as much
+run 2 contacts_wall contacts.lmp conducts "type 200 300 hertz scale 0.9 wall 200"
+with_floor contacts_wall >"$work/contacts_wall"
+closed 1 1000 2 2 >"$work/half"
+near "$work/half" "$work/contacts_wall" 1e-9 "contacts with a floor of a conductivity of its own"
 
 # beside radiation: what contacts bring is what fibrad heat says
 "$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin:at=0:temperature=1000 \
@@ -519,7 +559,7 @@ heat() {
 }
 for step in $(seq 1500 250 3250); do heat "$work/shell.out.frame.$step" "$step"; done >"$work/heats"
 # temperatures of the shell at steps 1500 and 3500
-shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $(NF - 3) } END { print t[1500], t[3500] }' "$work/shell.log")
+shell_kelvins=$(awk '$1 ~ /^(1500|3500)$/ && NF > 10 { t[$1] = $(NF - 4) } END { print t[1500], t[3500] }' "$work/shell.log")
 found=$(awk -v kelvins="$shell_kelvins" '
     NR == 1 { split(kelvins, of); begin = t = of[1] }
     { for (k = 0; k < 25; k++) t += ($1 - $2*t^4)*.01/20 }
@@ -637,8 +677,12 @@ fails "must be above 0, not nan" "a conductivity that is no number" strict "no s
 fails "the time step must be at most 0.0627" "contacts for which the time step is too long" heat 1 strict "no contacts 1e10"
 run 2 parts frozen.lmp "${whole[@]}" heat 1 strict "no contacts 1e6" && grep -q "step 0: contacts conduct in [0-9]* parts" "$work/parts.log"
 verdict "contacts that conduct in parts of a step of heat" $?
+fails "particle 10: convection -3 to gas of 400 K" "a heat transfer coefficient below 0" \
+    also "variable h atom (id==10)*-3" strict "no convection v_h 400"
+fails "the time step must be at most" "convection for which the time step is too long" heat 1 strict "no convection 1e7 400"
+fails "there is no variable .h. of equal or atom style" "a coefficient that is not there" strict "no convection v_h 400"
+fails "convection. needs temperatures" "convection without temperatures" heat 0 strict "no convection 5 400"
 fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
-fails "wall 1 is a mesh, and contacts need planes" "contacts beside a mesh" floor "mesh $work/box.stl temperature 1000 emissivity 0.9" strict "no contacts 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
 fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"
 fails "moved. needs temperatures" "a distance moved without temperatures" heat 0 strict "no moved 0.1"

@@ -161,6 +161,45 @@ for ranks in 1 2; do
             printf "%d rank(s): contacts of the driver and of LIGGGHTS part by %.1e K\n", ranks, sqrt(most)
             exit !(n == 588 && moved > 200 && most < 1e-16) }' || complain "contacts conduct otherwise than those of LIGGGHTS"
 done
+# The same with a floor of the conductivity of the particles
+sed -e "s|^fix heat .*|$transport|" -e '/conducted/d' bed >floored
+echo 'thermo_style custom step c_mean c_hottest' >>floored
+for bed in bed floored; do { echo 'run 0' && echo 'set atom 1*100 property/atom Temp 900' && echo "$dump" | sed "s/500 END/300 end_$bed/" && echo "$format"; } | cat $bed - >own_$bed; done
+sed -i '/^fix floor/s/ temperature .*//' own_floored
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9 --every 1 --rows 300'
+run own_floor 1 'setforce 0 0 0' 300 -in own_bed
+for ranks in 1 2; do
+    sed "s/end_floored/end_floored$ranks/" own_floored >own_floored$ranks
+    run floor$ranks $ranks 'setforce 0 0 0' 300 -in own_floored$ranks --contacts '5 lens scale 1.7724538509055159 wall 5'
+    paste end_bed "end_floored$ranks" | awk -v ranks="$ranks" '
+        NF == 6 && $1 + 0 == $1 { off = ($2 - $5)^2; if (off > most) most = off; n++ }
+        END {
+            printf "%d rank(s): contacts and a floor of the driver and of LIGGGHTS part by %.1e K\n", ranks, sqrt(most)
+            exit !(n == 588 && most < 1e-18) }' || complain "the floor conducts otherwise than that of LIGGGHTS"
+    awk -v q="$(value floor$ranks contacts_zmin)" 'BEGIN { exit !(q < -.1) }' || complain "the floor conducts nothing"
+done
+
+# Gas: each step leaves 1 - h A t/C of the difference; by type, and by properties of particles
+radiation='--emissivity 0 --surroundings 300 --wall zmin:temperature=1200:emissivity=0 --every 1 --rows 300'
+{ sed '/end_free/,$d' free && echo 'fix film all property/atom film scalar yes no no 25' &&
+    echo 'fix gas all property/atom gas scalar yes no no 400' && echo "$dump" | sed 's/500 END/300 end_GAS/' && echo "$format"; } >in_gas
+for ranks in 1 2; do
+    for words in "25 400" "film gas"; do
+        sed "s/GAS/gas$ranks/" in_gas >in_gas$ranks
+        run gas$ranks $ranks 'setforce 0 0 0' 300 -in in_gas$ranks --convection "$words"
+        awk -v q="$(value gas$ranks convection_particles)" -v heat="$(value gas$ranks heat_before) $(value gas$ranks heat_after)" '
+            NF == 3 && $1 + 0 == $1 { at[$1] = $2 }
+            END {
+                left = exp(300 * log(1 - 25 * 3 / .003 / 2500 / 5 * 2e-5)); split(heat, h)
+                for (i in at) { d = at[i] - 400 - ((i + 0 <= 100 ? 900 : 300) - 400) * left; n++; if (d * d > most) most = d * d }
+                lost = (h[2] - h[1] - q) / q
+                printf "gas cools particles off by %.1e K, energy off by %.1e\n", sqrt(most), lost
+                exit !(n == 294 && most < 1e-18 && lost * lost < 1e-22) }' end_gas$ranks || complain "gas cools otherwise"
+    done
+done
+cmp end_gas1 end_gas2 || complain "what gas brings depends on ranks"
+radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9'
+
 radiation='--emissivity 0.8 --surroundings 300 --wall zmin:temperature=1200:emissivity=0.9:capacity=3'
 run touched 2 nve/sphere 300 -in free --contacts '5 hertz gas 0.03' --rows 100 --every 10
 echo "$(value touched heat_before) $(value touched heat_after) $(value touched radiation_surroundings) $(value touched temperature_zmin) \
@@ -300,6 +339,13 @@ refuse 1 2 "'1.2' is not a number from 0 to 1" -in bed --emissivity 1.2
 refuse 1 2 "solid-conductivity: '0' is not a number above 0" -in bed --solid-conductivity 0
 refuse 1 2 "solid-conductivity: '5,nan' is not a number above 0" -in bed --solid-conductivity 5,nan
 refuse 1 2 "contacts: '5 scale' is not K" -in bed --contacts '5 scale'
+refuse 1 2 "contacts: '5 wall 0' is not K" -in bed --contacts '5 wall 0'
+refuse 1 2 "convection: '25' is not H" -in bed --convection 25
+refuse 1 2 "convection: '25,-1 300' is not H" -in bed --convection '25,-1 300'
+# shellcheck disable=SC2086
+refuse 2 3 "2 heat transfer coefficients for 1 types" -in bed $radiation --convection '5,6 300' --steps 1
+# shellcheck disable=SC2086
+refuse 2 3 "has no fix property/atom wind scalar" -in bed $radiation --convection 'wind 300' --steps 1
 refuse 1 2 "contacts excludes" -in bed --emissivity 1 --surroundings 300 --steps 1 --contacts 5 --solid-conductivity 5
 # shellcheck disable=SC2086
 refuse 2 3 "fix heat/gran/conduction of the script conducts through contacts already" -in bed $radiation --steps 1 --contacts 5

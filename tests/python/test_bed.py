@@ -525,3 +525,24 @@ def test_gas_that_flows():
             bed.solve(None, 0.0, power=1.0, surroundings=300, gas_flow=(flow, 5.0), **film)
     with pytest.raises(fibrad.Error, match="stream"):
         bed.solve(None, 0.0, power=1.0, surroundings=300, gas_flow=([0, 0, 0], -5.0), **film)
+
+
+def test_stored_heat():
+    """A table with a latent heat, a held sphere and a wall with a capacity: closed forms without radiation."""
+    bed = fibrad.Bed([[0.0, 0, 0], [0.5, 0, 0]], 0.1, walls="box:temperature=300")
+    metal = fibrad.Store([300, 700], [1.0, 3.0], melting=500, latent=400)
+    first = bed.advance(300.0, 10.0, capacity=[2.0, math.inf], emissivity=0.0, power=[100.0, 5.0], store=metal)
+    assert first.stored == pytest.approx([1000, 0]) and first.held == pytest.approx(50)
+    assert first.temperatures == pytest.approx([500, 300]) and first.melted == pytest.approx([0.5, 0])
+    last = bed.advance(first.temperatures, 3.0, capacity=[2.0, math.inf], emissivity=0.0, power=[100.0, 5.0], store=[metal],
+                       store_of=[0, 0], melted=first.melted)
+    assert last.temperatures[0] == pytest.approx(500, abs=1e-9) and last.melted[0] == pytest.approx(0.875, abs=1e-12)
+    walls = "zmin:capacity=50:temperature=400:power=7:emissivity=0,zmax:capacity=20:temperature=400:emissivity=0"
+    end = bed.advance(300.0, 10.0, capacity=1.0, emissivity=0.0, walls=walls)
+    assert end.wall_temperatures["zmin"] == pytest.approx(401.4) and end.wall_temperatures["zmax"] == pytest.approx(400)
+    assert bed.solve([300, 300], 0.5, walls="zmin:capacity=5:temperature=400:power=7").wall_temperatures["zmin"] == 400
+    for wrong in (fibrad.Store([300, 200], [1, 1]), fibrad.Store([300], [0]), fibrad.Store(latent=-1)):
+        with pytest.raises(fibrad.Error, match="Store needs"):
+            bed.advance(300.0, 1.0, capacity=1.0, emissivity=0.0, store=wrong)
+    with pytest.raises(fibrad.Error, match="exclude each other"):
+        bed.advance(300.0, 1.0, capacity=1.0, emissivity=0.0, walls="zmin:temperature=300:power=3")

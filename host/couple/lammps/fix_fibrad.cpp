@@ -120,6 +120,9 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             solid = read_property("the conductivity of the solid", 1e-300, huge);
         else if (key == "contacts")
             read_contacts();
+        else if (key == "convection")
+            film = read_film("the heat transfer coefficient", huge, true),
+            gas = read_film("the temperature of the gas", FIBRAD_TEMPERATURE_MAX, false);
         else if (key == "surroundings")
             read_surroundings();
         else if (key == "wall")
@@ -142,8 +145,9 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             read_option(key);
     }
     if (!emissivity.given()) stop("`emissivity` is missing");
-    for (const char *needs : {solid.given() ? "solid" : "", contact.given() ? "contacts" : "", errors ? "errors" : "",
-                              moved > 0 ? "moved" : "", emissivity.table.empty() ? "" : "@FILE"})
+    for (const char *needs :
+         {solid.given() ? "solid" : "", contact.given() ? "contacts" : "", film.given() ? "convection" : "",
+          errors ? "errors" : "", moved > 0 ? "moved" : "", emissivity.table.empty() ? "" : "@FILE"})
         if (*needs && !heat_every) stop(text("`%s` needs temperatures: NEVERY must be above 0", needs));
     if (solid.given() && contact.given()) stop("`contacts` needs particles of one temperature each, without `solid`");
     if (!known_units && heat_every && radiation.sigma == 0)
@@ -159,7 +163,7 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     nevery = heat_every ? heat_every : rows_every;
     scalar_flag = vector_flag = peratom_flag = 1;
     size_peratom_cols = columns > 1 ? columns : 0;
-    size_vector = 5 + (int)radiation.walls + 3 + (int)radiation.walls + 1 + 2;
+    size_vector = 5 + (int)radiation.walls + 3 + (int)radiation.walls + 1 + 2 + 1;
     restart_global = moving;
     for (uint32_t k = 0; k < radiation.walls; k++) restart_global |= radiation.words[k]->capacity > 0;
     global_freq = peratom_freq = 1;
@@ -262,7 +266,15 @@ void FixFibrad::read_option(const std::string &key) {
     at++;
 }
 
-// K [lens | hertz] [scale S] [gas KG]
+// v_NAME, or a property
+FixFibrad::Property FixFibrad::read_film(const char *what, double high, bool number_follows) {
+    Property property;
+    if (peek().compare(0, 2, "v_") != 0) return read_property(what, 0, high, number_follows);
+    property.variable = next().substr(2);
+    return property;
+}
+
+// K [lens | hertz] [scale S] [gas KG] [wall KW]
 void FixFibrad::read_contacts() {
     contact = read_property("the conductivity at contacts", 1e-300, 1e300);
     std::vector<const char *> words;
@@ -274,7 +286,7 @@ void FixFibrad::read_contacts() {
 }
 
 // VALUE | type VALUE VALUE ... | d_NAME
-FixFibrad::Property FixFibrad::read_property(const char *what, double low, double high) {
+FixFibrad::Property FixFibrad::read_property(const char *what, double low, double high, bool number_follows) {
     Property property;
     if (peek().compare(0, 2, "d_") == 0) { // of fix property/atom
         property.of_atom = next();
@@ -288,7 +300,7 @@ FixFibrad::Property FixFibrad::read_property(const char *what, double low, doubl
     for (size_t type = 1; by_type && type <= types; type++)
         property.of_type[type] =
             read_value(text("%s of type %zu of %zu", what, type, types), low, high, &property.table[type]);
-    if (is_number(peek()))
+    if (!number_follows && is_number(peek()))
         stop(text("there are too many values of %s: ", what) +
              (by_type ? text("atoms have %zu types", types) : "values of types follow the word `type`"));
     const auto given = [](const Table &t) { return t.given(); };
@@ -347,7 +359,8 @@ void FixFibrad::init() {
     place_walls();
     if (!emissivity.of_atom.empty()) need(emissivity.of_atom);
     if (!solid.of_atom.empty()) need(solid.of_atom);
-    if (!contact.of_atom.empty()) need(contact.of_atom);
+    for (const Property *property : {&contact, &film, &gas})
+        if (!property->of_atom.empty()) need(property->of_atom);
     if (contact.given()) refuse_conduction();
     if (!heat_every) return;
 
@@ -410,6 +423,7 @@ void FixFibrad::list_output() {
     list += text(", [%d] outside, [%d] overlapping, [%d] behind", 6 + walls, 7 + walls, 8 + walls) + names;
     list += text(", [%d] gone", 9 + 2 * walls);
     if (contact.given()) list += text(", [%d] through contacts, [%d] contacts", 10 + 2 * walls, 11 + 2 * walls);
+    if (film.given()) list += text(", [%d] gas", 12 + 2 * walls);
     say(text("fix fibrad: f_%s", id) + list);
     if (errors) say(text("fix fibrad: f_%s of atoms: [1] power, [2] beyond, [3] error of the power", id));
 }
@@ -602,18 +616,31 @@ double FixFibrad::kelvins(const std::string &variable) {
     return value;
 }
 
-// Evaluates all variables. They may use computes, which are then needed at steps of heat.
+// Evaluates a variable of equal or atom style for all members.
+std::vector<double> FixFibrad::evaluated(const std::string &name) {
+    const int k = input->variable->find(name.c_str());
+    if (k < 0 || !(input->variable->equalstyle(k) || input->variable->atomstyle(k)))
+        stop("there is no variable `" + name + "` of equal or atom style");
+    if (input->variable->equalstyle(k)) return std::vector<double>(member.size(), input->variable->compute_equal(k));
+    std::vector<double> all(atom->nlocal + 1), value;
+    input->variable->compute_atom(k, 0, all.data(), 1, 0);
+    for (int i : member) value.push_back(all[i]);
+    return value;
+}
+
+// Evaluates variables of walls and surroundings.
 void FixFibrad::find_temperatures() {
-    modify->clearstep_compute();
     if (!surroundings.empty()) radiation.surroundings = kelvins(surroundings);
     for (uint32_t k = 0; k < radiation.walls; k++)
         if (!variables[k].empty()) radiation.temperature[k] = kelvins(variables[k]);
-    modify->addstep_compute(update->ntimestep + heat_every);
 }
 
 void FixFibrad::find_powers() {
-    find_temperatures();
     select();
+    modify->clearstep_compute(); // variables may use computes, which are then needed at steps of heat
+    find_temperatures();
+    const std::vector<double> h = values(film), t_gas = values(gas);
+    modify->addstep_compute(update->ntimestep + heat_every);
     const std::vector<double> t = temperatures(), k = values(contact);
     std::vector<double> power(member.size()), conductance(member.size()), capacity = values(cp);
     check_values(t);
@@ -624,6 +651,9 @@ void FixFibrad::find_powers() {
     const double seconds = update->dt * heat_every;
     need_good(radiation_powers(&radiation, &present.bed, t.data(), number_of_rows(false), k.data(), capacity.data(),
                                seconds, power.data(), conductance.data()));
+    if (film.given())
+        need_good(radiation_convect(&radiation, &present.bed, t.data(), h.data(), t_gas.data(), power.data(),
+                                    conductance.data()));
     need_good(
         radiation_stable(&radiation, &present.bed, t.data(), capacity.data(), conductance.data(), seconds, heat_every));
     powers_at = update->ntimestep;
@@ -715,6 +745,7 @@ void FixFibrad::need(const std::string &name) {
 std::vector<double> FixFibrad::values(const Property &property) {
     std::vector<double> value;
     if (!property.given()) return value;
+    if (!property.variable.empty()) return evaluated(property.variable);
     const double *of_atom = property.of_atom.empty() ? nullptr : vector(property.of_atom);
     for (int i : member) value.push_back(of_atom ? of_atom[i] : property.of_type[atom->type[i]]);
     if (property.table.empty()) return value;
@@ -730,20 +761,22 @@ double FixFibrad::mass(int i) const { return atom->rmass ? atom->rmass[i] : atom
 
 // ---- output, and powers that move with their atoms ------------------------------------------------------------------
 
-double FixFibrad::compute_scalar() { return radiation.totals.particles + radiation.conducted.particles; }
+double FixFibrad::compute_scalar() {
+    return radiation.totals.particles + radiation.conducted.particles + radiation.convected;
+}
 
 double FixFibrad::compute_vector(int n) {
     const fibrad_insitu_facts now = facts();
     const fibrad_insitu_conducted &conducted = radiation.conducted;
     const double first[] = {radiation.totals.surroundings, now.beyond, now.error, now.seconds_rows, now.seconds_powers};
     const double strays[] = {(double)now.outside, (double)now.overlapping, (double)now.behind};
-    const double rest[] = {(double)now.gone, conducted.particles, conducted.contacts};
+    const double rest[] = {(double)now.gone, conducted.particles, conducted.contacts, -radiation.convected};
     const int last = 5 + (int)radiation.walls;
     return n < 5                 ? first[n]
            : n < last            ? radiation.totals.wall[n - 5] + conducted.wall[n - 5]
            : n < last + 3        ? strays[n - last]
-           : n < size_vector - 3 ? radiation.temperature[n - last - 3]
-                                 : rest[n - size_vector + 3];
+           : n < size_vector - 4 ? radiation.temperature[n - last - 3]
+                                 : rest[n - size_vector + 4];
 }
 
 double FixFibrad::memory_usage() { return (double)facts().bytes + (double)(q.capacity() * sizeof(double)); }

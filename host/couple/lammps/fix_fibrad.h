@@ -59,8 +59,9 @@ class FixFibrad : public Fix {
     struct Property {
         std::vector<double> of_type; // [ntypes + 1], by type; empty: not given, or of_atom is set
         std::vector<Table> table;    // [ntypes + 1], by type; empty: there are no tables
-        std::string of_atom;         // "d_NAME", the vector; empty: of_type is set
-        bool given() const { return !of_type.empty() || !of_atom.empty(); }
+        std::string of_atom;         // "d_NAME", the vector; empty: of_type or variable is set
+        std::string variable;        // "v_NAME", of equal or atom style; empty: of_type or of_atom is set
+        bool given() const { return !of_type.empty() || !of_atom.empty() || !variable.empty(); }
     };
 
     // The bed at present, with the arrays to which it points.
@@ -83,10 +84,11 @@ class FixFibrad : public Fix {
     void read_surroundings();
     void read_temperature();
     void read_group();
-    Property read_property(const char *what, double low, double high);
+    Property read_property(const char *what, double low, double high, bool number_follows = false);
     double read_value(const std::string &what, double low, double high, Table *);
     Table read_table(const std::string &path, const char *what, double low, double high);
     void read_contacts();
+    Property read_film(const char *what, double high, bool number_follows);
     void read_option(const std::string &key);
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
@@ -94,8 +96,9 @@ class FixFibrad : public Fix {
     bool known(const std::string &name);          // whether any rank has the vector
     void need(const std::string &name);           // stops with an error if a rank with atoms lacks the vector
     std::vector<double> values(const Property &); // [member]
-    std::vector<double> temperatures();           // [member]; sets those of 0 K to `initial` first
-    std::vector<double> conductivities();         // [member], relative; empty: infinite
+    std::vector<double> evaluated(const std::string &variable); // [member]
+    std::vector<double> temperatures();                         // [member]; sets those of 0 K to `initial` first
+    std::vector<double> conductivities();                       // [member], relative; empty: infinite
     double mass(int i) const;
 
     // Steps of the simulation.
@@ -128,6 +131,7 @@ class FixFibrad : public Fix {
     int heat_every, rows_every;     // NEVERY and NROWS; heat_every 0: no steps of heat
     Property emissivity, cp, solid; // solid: conductivity of the solid, energy/(time length K); not given: infinite
     Property contact;               // conductivity of the solid at contacts; not given: contacts do not conduct
+    Property film, gas;             // heat transfer coefficient to gas, and its temperature; not given: none
     std::string temperature;        // name of the vector of temperatures
     std::string rows_file;          // first part of the names of the files of rows; empty: none
     int kept_bit;                   // bit of group2, whose temperatures this fix does not step; 0: none

@@ -58,6 +58,9 @@ struct Driver {
     std::vector<double> emissivity, gain, heat_capacity;         /* [own] */
     std::vector<double> conductivity;                            /* [own], k*; empty: infinite */
     std::vector<double> conductance, contact_solid;              /* [own], of contacts: power/K, conductivity */
+    Fix *film_property, *gas_property;                           /* NULL: by type, or none */
+    std::vector<double> film, gas;                               /* [own], coefficient, K; empty: no convection */
+    double by_gas;                                               /* heat by convection before `since` */
     bool counts;                                                 /* the heat of particles that come is counted */
     bool radiates;                                               /* there are powers */
     LAMMPS_NS::bigint since;                                     /* first step in which the current powers heat */
@@ -114,6 +117,12 @@ void find_properties(Driver *driver) {
     if (property(driver, "fibradPower", "property/atom", "scalar", nullptr) == nullptr)
         command(driver, "fix fibradPower all property/atom fibradPower scalar yes no no 0");
     driver->power = property(driver, "fibradPower", "property/atom", "scalar", "fix fibradPower");
+    const auto of_particles = [driver](const std::string &name) {
+        const std::string maker = "fix property/atom " + name + " scalar";
+        return name.empty() ? nullptr : property(driver, name.c_str(), "property/atom", "scalar", maker.c_str());
+    };
+    driver->film_property = of_particles(driver->options.film_property);
+    driver->gas_property = of_particles(driver->options.gas_property);
 }
 
 /* Makes one value for all types a value per type. */
@@ -135,6 +144,8 @@ void check_box(Driver *driver) {
     expand(&driver->options.emissivity, types, "emissivities");
     expand(&driver->options.solid, types, "conductivities of the solid");
     expand(&driver->options.contact, types, "conductivities at contacts");
+    expand(&driver->options.film, types, "heat transfer coefficients");
+    expand(&driver->options.gas, types, "temperatures of the gas");
     if (domain->triclinic) stop(WRONG_INPUT, "the box is triclinic");
     if (driver->radiation.insitu == nullptr)
         check(driver, radiation_begin(&driver->radiation, MPI_COMM_WORLD, domain->periodicity));
@@ -204,12 +215,20 @@ void take_particles(Driver *driver) {
     driver->conductance.resize(n);
     driver->heat_capacity.resize(n);
     driver->contact_solid.clear();
+    driver->film.clear();
+    driver->gas.clear();
     for (size_t i = 0; i < n; ++i) {
         const size_t type = (size_t)atom->type[i] - 1;
         driver->id[i] = (uint64_t)atom->tag[i];
         driver->emissivity[i] = driver->options.emissivity[type];
         driver->heat_capacity[i] = heat_capacity(driver, (int)i);
         if (!driver->options.contact.empty()) driver->contact_solid.push_back(driver->options.contact[type]);
+        const auto take = [i, type](Fix *given, const std::vector<double> &of_type, std::vector<double> *values) {
+            if (given != nullptr || !of_type.empty())
+                values->push_back(given != nullptr ? given->vector_atom[i] : of_type[type]);
+        };
+        take(driver->film_property, driver->options.film, &driver->film);
+        take(driver->gas_property, driver->options.gas, &driver->gas);
     }
 }
 
@@ -323,6 +342,7 @@ void count_heat(Driver *driver, LAMMPS_NS::bigint now) {
     driver->heat += seconds * r.totals.particles;
     driver->heat_surroundings += seconds * r.totals.surroundings;
     driver->through += seconds * r.conducted.particles;
+    driver->by_gas += seconds * r.convected;
     for (uint32_t k = 0; k < r.walls; ++k) {
         driver->heat_wall[k] += seconds * r.totals.wall[k];
         driver->through_wall[k] += seconds * r.conducted.wall[k];
@@ -363,6 +383,9 @@ void radiate(Driver *driver, LAMMPS_NS::bigint step, int n) {
     const double seconds = driver->lmp->update->dt * (double)every, *capacity = driver->heat_capacity.data();
     check(driver, radiation_powers(r, &bed, t, (uint64_t)number, driver->contact_solid.data(), capacity, seconds,
                                    driver->gain.data(), driver->conductance.data()));
+    if (driver->film_property != nullptr || !driver->options.film.empty())
+        check(driver, radiation_convect(r, &bed, t, driver->film.data(), driver->gas.data(), driver->gain.data(),
+                                        driver->conductance.data()));
     check(driver, radiation_stable(r, &bed, t, capacity, driver->conductance.data(), seconds, every));
     double *source = driver->source->vector_atom, *power = driver->power->vector_atom;
     for (int i = 0; i < n; ++i) {
@@ -415,10 +438,12 @@ void print_summary(const Driver *driver, double before, double after, double sec
     if (!driver->options.contact.empty()) std::printf("contacts_particles %.17g\n", driver->through);
     for (uint32_t k = 0; k < walls && !driver->options.contact.empty(); ++k)
         std::printf("contacts_%s %.17g\n", name[k], driver->through_wall[k]);
+    if (driver->by_gas != 0) std::printf("convection_particles %.17g\n", driver->by_gas);
     for (uint32_t k = 0; k < walls; ++k)
         std::printf("temperature_%s %.17g\n", name[k], driver->radiation.temperature[k]);
     std::printf("heat_came %.17g\nheat_gone %.17g\n", came, gone);
-    std::printf("conduction_and_sources %.17g\n", after - before - driver->heat - driver->through - came + gone);
+    std::printf("conduction_and_sources %.17g\n",
+                after - before - driver->heat - driver->through - driver->by_gas - came + gone);
     std::printf("outside %" PRIu64 "\noverlapping %" PRIu64 "\nbehind %" PRIu64 "\ngone %" PRIu64 "\n", facts.outside,
                 facts.overlapping, facts.behind, facts.gone);
     std::printf("beyond_mean %.17g\nerror_rms %.17g\n", facts.beyond, facts.error);

@@ -1,6 +1,7 @@
 /* liggghts_options.cpp - the options of the driver of LIGGGHTS. SPDX-License-Identifier: MIT */
 #include "couple/liggghts/liggghts_options.h"
 
+#include <cctype>
 #include <climits>
 #include <cmath>
 #include <cstdio>
@@ -25,7 +26,21 @@ bool numbers(const char *text, double low, double high, std::vector<double> *val
     }
 }
 
-/* Reads K[,K...] [lens|hertz] [scale S] [gas KG]. */
+/* Reads H[,H...] T[,T...], each of which may be the name of a property. */
+bool convection(const char *text, liggghts_options *o) {
+    std::istringstream given(text);
+    std::string word, rest;
+    const auto read = [&](double high, std::vector<double> *values, std::string *property) {
+        if (!(given >> word)) return false;
+        if (std::isalpha((unsigned char)word[0]) == 0) return numbers(word.c_str(), 0, high, values);
+        *property = word;
+        return true;
+    };
+    return read(1e300, &o->film, &o->film_property) && read(FIBRAD_TEMPERATURE_MAX, &o->gas, &o->gas_property) &&
+           !(given >> rest);
+}
+
+/* Reads K[,K...] [lens|hertz] [scale S] [gas KG] [wall KW]. */
 bool contacts(const char *text, std::vector<double> *solid, radiation *r) {
     std::istringstream given(text);
     std::vector<std::string> word;
@@ -62,8 +77,11 @@ const char *take(const std::string &name, char *text, liggghts_options *o, radia
     if (name == "solid-conductivity")
         return numbers(text, 1e-300, 1e300, &o->solid) ? nullptr : "is not a number above 0, nor one for each type";
     if (name == "contacts")
-        return contacts(text, &o->contact, r) ? nullptr
-                                              : "is not K[,K...] [lens|hertz] [scale S] [gas KG], with K above 0";
+        return contacts(text, &o->contact, r)
+                   ? nullptr
+                   : "is not K[,K...] [lens|hertz] [scale S] [gas KG] [wall KW], with K above 0";
+    if (name == "convection")
+        return convection(text, o) ? nullptr : "is not H[,H...] T[,T...], of 0 or more, or names of properties";
     if (name == "surroundings")
         return radiation_number(text, 0, FIBRAD_TEMPERATURE_MAX, &r->surroundings) ? nullptr : "is not a temperature";
     if (name == "steps") return radiation_whole(text, 0, INT64_MAX, &o->steps) ? nullptr : "is not a number of steps";
@@ -128,9 +146,15 @@ void liggghts_options_help() {
         "  --emissivity E[,E...]    emissivity of all particles, 0 to 1, or of each type\n"
         "  --solid-conductivity K[,K...]  conductivity of the solid of all particles, or of each type, in si\n"
         "                           W/(m K) [infinite: one temperature a particle]\n"
-        "  --contacts 'K[,K...] [lens|hertz] [scale S] [gas KG]'  contacts conduct: conductivity K of the solid at\n"
+        "  --contacts 'K[,K...] [lens|hertz] [scale S] [gas KG] [wall KW]'  contacts conduct: conductivity K of the "
+        "solid at\n"
         "                           contacts, in si W/(m K), spots as `fibrad heat --contacts` has them [lens],\n"
-        "                           factor of their radii [1], conductivity of the gas in gaps [no gas]\n"
+        "                           factor of their radii [1], conductivity of the gas in gaps [no gas], of walls\n"
+        "                           [infinite]\n"
+        "  --convection 'H[,H...] T[,T...]'  heat transfer coefficients to gas, in si W/(m2 K), and temperatures [K] "
+        "of\n"
+        "                           this gas, of all particles or of each type; or the names of properties of\n"
+        "                           particles, made by fix property/atom NAME scalar [no gas]\n"
         "  --surroundings T         temperature [K] of what is seen where there is neither particle nor wall\n"
         "  --wall WALL[,WALL...]    walls, each a shape with keys: zmin:temperature=1200:emissivity=0.9.\n"
         "                           Shapes: xmin ... zmax, a plane at the fixed end of the box or at=POS; box, all\n"

@@ -13,6 +13,8 @@ struct liggghts_options {
     std::vector<double> emissivity;              /* one for all types, or one per type */
     std::vector<double> solid;                   /* the same of the conductivity of the solid; empty: infinite */
     std::vector<double> contact;                 /* the same of the solid at contacts; empty: contacts do not conduct */
+    std::vector<double> film, gas;               /* likewise of heat transfer coefficients and temperatures of gas */
+    std::string film_property, gas_property;     /* names of properties of particles instead; empty: none */
     int64_t every = 20, rows = 1000, steps = -1; /* steps below 0: not given */
 };
 

@@ -62,16 +62,26 @@ int radiation_contact_words(struct radiation *r, const char *const *word, int co
     int at = 0;
     while (at < count) {
         const bool hertz = strcmp(word[at], "hertz") == 0, scale = strcmp(word[at], "scale") == 0;
+        const bool wall = strcmp(word[at], "wall") == 0; /* of a shape, it begins a wall */
         if (hertz || strcmp(word[at], "lens") == 0) {
             r->spots.hertz = hertz, at += 1;
             continue;
         }
-        if (!scale && strcmp(word[at], "gas") != 0) break;
         const char *value = at + 1 < count ? word[at + 1] : "";
-        if (!radiation_number(value, scale ? 1e-6 : 0, scale ? 1e6 : 1e300, scale ? &r->spots.scale : &r->spots.gas)) {
+        double number;
+        if (!scale && strcmp(word[at], "gas") != 0 && !(wall && number_read(value, &number))) break;
+        if (!radiation_number(value,
+                              scale  ? 1e-6
+                              : wall ? 1e-300
+                                     : 0,
+                              scale ? 1e6 : 1e300,
+                              scale  ? &r->spots.scale
+                              : wall ? &r->spots.wall
+                                     : &r->spots.gas)) {
             refuse(r, "%s, not `%s`",
-                   scale ? "the scale of contacts must be in [1e-6, 1e6]"
-                         : "the conductivity of the gas must be 0 or more",
+                   scale  ? "the scale of contacts must be in [1e-6, 1e6]"
+                   : wall ? "the conductivity of walls at contacts must be above 0"
+                          : "the conductivity of the gas must be 0 or more",
                    value);
             return -1;
         }
@@ -313,6 +323,31 @@ bool radiation_stable(struct radiation *r, const fibrad_insitu_bed *bed, const d
             return false;
     }
     return true;
+}
+
+bool radiation_convect(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature,
+                       const double *coefficient, const double *gas, double *power, double *conductance) {
+    double fault[3] = {0}, sums[2] = {0}; /* id, coefficient and gas of the particle at fault; its id, and the power */
+    for (size_t i = 0; i < bed->n; ++i) {
+        const double film = coefficient[i] * 4 * acos(-1) * bed->radius[i] * bed->radius[i];
+        const double gain = film * (gas[i] - temperature[i]);
+        const bool good =
+            film >= 0 && film <= FIBRAD_CONDUCTANCE_MAX && gas[i] >= 0 && gas[i] <= FIBRAD_TEMPERATURE_MAX;
+        if (!good && !((double)bed->id[i] < fault[0]))
+            fault[0] = (double)bed->id[i], fault[1] = coefficient[i], fault[2] = gas[i];
+        power[i] += gain, conductance[i] += film / 2;
+        sums[1] += gain;
+    }
+    sums[0] = fault[0];
+    MPI_Allreduce(MPI_IN_PLACE, &sums[1], 1, MPI_DOUBLE, MPI_SUM, r->comm);
+    r->convected = sums[1];
+    MPI_Allreduce(MPI_IN_PLACE, sums, 1, MPI_DOUBLE, MPI_MAX, r->comm);
+    if (sums[0] == 0) return true;
+    for (int k = 0; k < 3; ++k)
+        if (fault[0] != sums[0]) fault[k] = -INFINITY;
+    MPI_Allreduce(MPI_IN_PLACE, fault, 3, MPI_DOUBLE, MPI_MAX, r->comm);
+    return refuse(r, "particle %.0f: convection %g to gas of %g K; both must be 0 or more", sums[0], fault[1],
+                  fault[2]);
 }
 
 void radiation_heat_walls(struct radiation *r, double seconds) {

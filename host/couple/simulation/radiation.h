@@ -50,6 +50,7 @@ struct radiation {
 
     fibrad_insitu_totals totals;       /* of the last powers, by radiation */
     fibrad_insitu_conducted conducted; /* of the same, through contacts */
+    double convected;                  /* what the gas has brought to particles with them */
     int rows_made, rows_followed, powers_found;
     bool told[FIBRAD_REMARKS], told_parts;
     char fault[2 * WALL_FAULT];
@@ -70,7 +71,8 @@ bool radiation_whole(const char *word, int64_t low, int64_t high, int64_t *value
  * option. Else says what its value is, not beginning with "is". */
 const char *radiation_option(struct radiation *r, const char *name, const char *word);
 
-/* Reads [lens | hertz] [scale S] [gas KG] up to another word. Returns the number of words; -1 after an error. */
+/* Reads [lens | hertz] [scale S] [gas KG] [wall KW] up to another word. Returns the number of words; -1 after an error.
+ */
 int radiation_contact_words(struct radiation *r, const char *const *word, int count);
 
 /* Sets sigma by the units of the simulation. False, without a sentence: they are neither si nor cgs. */
@@ -103,9 +105,15 @@ bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t 
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,
                       const double *solid, const double *capacity, double seconds, double *power, double *conductance);
 
+/* Adds to power[n] what gas of the temperatures gas[n] brings, with heat transfer coefficients [n], and to
+ * conductance[n] half of what this is for each kelvin: the gas follows no particle. */
+bool radiation_convect(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature,
+                       const double *coefficient, const double *gas, double *power, double *conductance);
+
 /* Checks that steps of `seconds` for heat are stable: (4 sigma T^3 A e + 2 H) seconds < C, H the conductance of the
- * contacts. So no particle and no wall overshoots its surroundings, and no difference of temperatures changes its sign.
- * capacity: [n] C of particles; infinite: not checked. every: time steps of a step of heat. */
+ * contacts and half of that to gas. So no particle and no wall overshoots its surroundings, and no difference of
+ * temperatures changes its sign. capacity: [n] C of particles; infinite: not checked. every: time steps of a step of
+ * heat. */
 bool radiation_stable(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature,
                       const double *capacity, const double *conductance, double seconds, long every);
 

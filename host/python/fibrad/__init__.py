@@ -23,12 +23,12 @@ from ._contacts import Contacts
 from ._errors import Cancelled, Error, FileError, InputError, OutOfMemory, StateError
 from ._factors import Factors
 from ._files import FileFrame, read
-from ._heat import STEFAN_BOLTZMANN, Advance, Powers
+from ._heat import STEFAN_BOLTZMANN, Advance, Powers, Store
 from ._light import Absorbed, Light
 from ._scene import Mesh
 from ._walls import wall
 
 __version__: str = _library.library.fibrad_version().decode()
 __all__ = ["Absorbed", "Advance", "Bed", "Cancelled", "Contacts", "Error", "Factors", "FileError", "FileFrame",
-           "InputError", "Light", "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "exchange_factors", "read",
-           "view_factors", "wall"]
+           "InputError", "Light", "Mesh", "OutOfMemory", "Powers", "STEFAN_BOLTZMANN", "StateError", "Store", "exchange_factors",
+           "read", "view_factors", "wall"]

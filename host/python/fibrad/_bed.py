@@ -5,7 +5,7 @@ import ctypes
 import math
 import threading
 import weakref
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any, NoReturn, Optional, Union
 
 import numpy as np
@@ -15,11 +15,11 @@ from ._call import Call, Progress
 from ._contacts import Contacts, rule_of, take_contacts
 from ._errors import StateError
 from ._factors import Factors, Folder, Owner, Rule, take_factors
-from ._heat import STEFAN_BOLTZMANN, Advance, Emissivity, GasFlow, Powers, Sources, power_of
+from ._heat import STEFAN_BOLTZMANN, Advance, Emissivity, GasFlow, Powers, Sources, Store, power_of, stores_of
 from ._library import library
 from ._light import Absorbed, Light, lights_of, patches_pointer
-from ._limits import CAPACITY_MAX, DIRECTIONS, DURATION_MAX, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
-from ._scene import Packing, pointer
+from ._limits import DIRECTIONS, DURATION_MAX, PATCHES, POINTS, POWER_MAX, TEMPERATURE_MAX
+from ._scene import WHOLE, Packing, pointer
 from ._structures import ContactList, Fault, HeatConfig, HeatResult, LightResult, LightSources, Span
 from ._values import per_sphere, real, refuse, whole
 from ._walls import Container, Walls
@@ -436,7 +436,9 @@ class Bed:
                 walls_end: Optional[Walls] = None, step: Optional[float] = None, tolerance: Optional[float] = None,
                 sigma: float = STEFAN_BOLTZMANN, conductivity: Optional[ArrayLike] = None, contacts: Any = None,
                 convection: Optional[ArrayLike] = None, gas_temperature: Optional[ArrayLike] = None,
-                gas_temperature_end: Optional[ArrayLike] = None, gas_flow: Optional[GasFlow] = None) -> Advance:
+                gas_temperature_end: Optional[ArrayLike] = None, gas_flow: Optional[GasFlow] = None,
+                store: Union[Store, Sequence[Store], None] = None, store_of: Optional[ArrayLike] = None,
+                melted: Optional[ArrayLike] = None) -> Advance:
         """Temperatures after a span of time: capacity dT/dt = power + net power. Steps are implicit and of second order.
         They keep the energy. Small spheres among large ones do not limit the step.
 
@@ -447,8 +449,8 @@ class Bed:
         duration : float
             [s] Length of the span.
         capacity : (n,) array or float
-            [J/K] Heat capacities of the spheres, mass times specific heat, above 0. Those of a clump add up: `surfaces`
-            has the volumes.
+            [J/K] Heat capacities of the spheres, mass times specific heat, above 0. With `store` [kg] masses. A sphere of
+            infinite capacity keeps its temperature. Those of a clump add up: `surfaces` has the volumes.
         power : (n,) array or float, optional
             [W] Power of each sphere from inside. Default: none.
         surroundings_end : float, optional
@@ -461,12 +463,22 @@ class Bed:
             Of automatic steps: relative error of a temperature. Default: 1e-4.
         gas_temperature_end : (n,) array or float, optional
             [K] Temperatures of the gas at the end, linear in between. Default: constant.
+        store : Store or several, optional
+            A heat capacity that follows the temperature, and a latent heat. Default: capacities are constant.
+        store_of : (n,) array, optional
+            Number of the store of each sphere. Default: 0.
+        melted : (n,) array, optional
+            Fraction of each sphere that has melted at the beginning: that of the last span. Default: by the temperature.
         emissivity, surroundings, walls, sigma, conductivity, contacts, convection, gas_temperature, gas_flow
             As for `solve`.
         """
         container, packing, n = self._container, self._packing, self.n
         now = per_sphere("temperature", temperature, n, 0, TEMPERATURE_MAX, packing.names).copy()
-        heat = per_sphere("capacity", capacity, n, 0, CAPACITY_MAX, packing.names)
+        heat = per_sphere("capacity", capacity, n, 0, math.inf, packing.names)
+        stores = [] if store is None else [store] if isinstance(store, Store) else list(store)
+        structures, _arrays = stores_of(stores)
+        number = np.ascontiguousarray(np.broadcast_to(0 if store_of is None else np.asarray(store_of), (n,)), np.uint32)
+        fraction = np.full(n, math.nan) if melted is None else per_sphere("melted", melted, n, 0, 1, packing.names, True).copy()
         given = container.with_values(walls)
         sources = Sources(packing, container, given, surroundings, sigma, None, contacts, conductivity, convection,
                           gas_temperature, gas_flow, self._areas(), self._area_of)
@@ -486,16 +498,21 @@ class Bed:
         self._warn_of_units(surroundings, now)
         around = ctypes.c_double(real("surroundings_end", surroundings if surroundings_end is None else surroundings_end,
                                       0, TEMPERATURE_MAX))
-        flow, energy = np.zeros(n), np.zeros(len(given))
+        flow, stored, energy, capacities, ended = np.zeros(n), np.zeros(n), *np.zeros((3, len(given)))
+        capacities[:] = container.capacities(given)
+        sources.set_wall_power(container.powers(given, True))
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
                     wall_temperature=pointer(end), surroundings=ctypes.pointer(around), gas=pointer(gas), inlet=inlet,
                     step=real("step", step, 0, DURATION_MAX), tolerance=real("tolerance", tolerance, 0, 1),
+                    store=structures if stores else None, stores=len(stores), store_of=pointer(number, WHOLE) if stores else None,
+                    melted=pointer(fraction), stored=pointer(stored), wall_capacity=pointer(capacities), wall_end=pointer(ended),
                     power=pointer(flow), wall_energy=pointer(energy), law=ctypes.pointer(law) if law else None)
         self._use(library.fibrad_bed_advance, sources.c, span)
         self._warn(SOURCES)
         return Advance(temperatures=now, spheres=flow, walls=dict(zip(container.names, energy.tolist())),
-                       surroundings=span.surroundings_energy, gas=span.gas_energy,
-                       gas_temperatures=sources.gas_temperatures, steps=span.steps, refused=span.refused,
+                       surroundings=span.surroundings_energy, gas=span.gas_energy, gas_temperatures=sources.gas_temperatures,
+                       held=span.held_energy, stored=stored, melted=fraction,
+                       wall_temperatures=dict(zip(container.names, ended.tolist())), steps=span.steps, refused=span.refused,
                        corrections=span.corrections, error=span.error)
 
 

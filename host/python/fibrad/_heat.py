@@ -4,7 +4,7 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._call import Call
 from ._contacts import contacts_of
-from ._limits import POWER_MAX, SIGMA, TEMPERATURE_MAX
+from ._limits import CAPACITY_MAX, POWER_MAX, SIGMA, TEMPERATURE_MAX
 from ._scene import MARKS, WHOLE, Packing, pointer
-from ._structures import EmissivityLaw, HeatSources, Law, Stream
-from ._values import per_sphere, real, refuse
+from ._structures import EmissivityLaw, HeatSources, Law, Store as StoreStructure, Stream
+from ._values import doubles, per_sphere, real, refuse
 from ._walls import Container, Wall
 
 STEFAN_BOLTZMANN = 5.670374419e-8
@@ -139,10 +139,51 @@ class Powers:
                 f"error of a sphere {self.error:.2g} W>")
 
 
+@dataclasses.dataclass(frozen=True, eq=False)
+class Store:
+    """What a material stores, for `Bed.advance`. The capacities of spheres are then masses [kg].
+
+    Attributes
+    ----------
+    temperature
+        [K] rows of a table, ascending. No temperature may leave them, unless there is one row.
+    capacity
+        [J/(kg K)] the heat capacity at these, linear in between.
+    melting
+        [K] melting point, or the middle of the range in which the material melts.
+    latent
+        [J/kg] latent heat. 0: nothing melts.
+    width
+        [K] width of this range. 0: the material melts at one temperature.
+    """
+
+    temperature: ArrayLike = (1.0,)
+    capacity: ArrayLike = (1.0,)
+    melting: float = 0.0
+    latent: float = 0.0
+    width: float = 0.0
+
+
+def stores_of(stores: Sequence[Store]) -> tuple[Any, Any]:
+    """Structures of stores, and arrays that must stay as long as they."""
+    arrays = [(doubles("temperature of a Store", one.temperature).ravel(), doubles("capacity of a Store", one.capacity).ravel())
+              for one in stores]
+    for kelvins, values in arrays:
+        good = kelvins.size == values.size > 0 and (np.diff(kelvins) > 0).all()
+        if not good or not ((values > 0) & (values <= CAPACITY_MAX)).all() or not (kelvins >= 0).all():
+            raise refuse("a Store needs as many capacities, above 0, as temperatures, which ascend")
+    for one in stores:
+        if not (one.latent >= 0 and one.width >= 0) or one.latent > 0 and not one.melting > one.width / 2:
+            raise refuse("a Store needs latent and width of 0 or more, and melting above half of the width")
+    return (StoreStructure * len(stores))(*(
+        StoreStructure(pointer(kelvins), pointer(values), kelvins.size, one.melting, one.latent, one.width)
+        for one, (kelvins, values) in zip(stores, arrays))), arrays
+
+
 @dataclasses.dataclass(frozen=True, repr=False, eq=False)
 class Advance:
     """The result of a span of time. An energy is above 0 where heat was gained. The heat stored in the spheres, and the
-    energies of walls, surroundings and gas, add up to the energy that the powers have supplied.
+    energies of walls, surroundings, gas and held spheres, add up to the energy that the powers have supplied.
 
     Attributes
     ----------
@@ -158,6 +199,14 @@ class Advance:
         [J] energy that the gas of `convection` has gained.
     gas_temperatures
         [K] temperature of each slice of `gas_flow` at the end.
+    held
+        [J] energy that spheres of infinite capacity have gained.
+    stored
+        [J] (n,) heat that each sphere has stored.
+    melted
+        (n,) fraction of each sphere that has melted.
+    wall_temperatures
+        [K] temperatures of walls at the end, by name. NaN: that of a wall that stores no heat, and is found.
     steps
         Steps that were taken.
     refused
@@ -174,6 +223,10 @@ class Advance:
     surroundings: float
     gas: float
     gas_temperatures: NDArray[np.float64]
+    held: float
+    stored: NDArray[np.float64]
+    melted: NDArray[np.float64]
+    wall_temperatures: dict[str, float]
     steps: int
     refused: int
     corrections: int

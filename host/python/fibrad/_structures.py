@@ -174,20 +174,28 @@ class LightResult(Structure):
                 ("error_patches", c_double), ("sweeps", c_uint32), ("lights", c_uint32), ("patches", POINTER(c_double))]
 
 
+class Store(Structure):
+    _fields_ = [("temperature", POINTER(c_double)), ("capacity", POINTER(c_double)), ("rows", c_uint32),
+                ("melting", c_double), ("latent", c_double), ("width", c_double)]
+
+
 class Span(Structure):
     _fields_ = [("temperature", POINTER(c_double)), ("capacity", POINTER(c_double)), ("duration", c_double),
+                ("store", POINTER(Store)), ("store_of", POINTER(c_uint32)), ("stores", c_uint32),
+                ("melted", POINTER(c_double)), ("wall_capacity", POINTER(c_double)), ("wall_end", POINTER(c_double)),
                 ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)),
                 ("gas", POINTER(c_double)), ("wall_gas", POINTER(c_double)), ("inlet", POINTER(c_double)),
                 ("step", c_double), ("tolerance", c_double), ("power", POINTER(c_double)),
                 ("wall_power", POINTER(c_double)), ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)),
                 ("surroundings_energy", c_double), ("gas_power", c_double), ("gas_energy", c_double),
-                ("law", POINTER(Law)), ("observe", Observe), ("context", c_void_p), ("error", c_double),
-                ("steps", c_uint64), ("refused", c_uint64), ("sweeps", c_uint64), ("corrections", c_uint64)]
+                ("held_energy", c_double), ("stored", POINTER(c_double)), ("law", POINTER(Law)), ("observe", Observe),
+                ("context", c_void_p), ("error", c_double), ("steps", c_uint64), ("refused", c_uint64),
+                ("sweeps", c_uint64), ("corrections", c_uint64)]
 
 
 class ContactRule(Structure):
     _fields_ = [("spots", c_int), ("scale", c_double), ("gas_reach", c_double), ("gas_jump", c_double),
-                ("gas_least", c_double), ("gas_alone", c_int)]
+                ("gas_least", c_double), ("wall", c_double), ("gas_alone", c_int)]
 
 
 class ContactList(Structure):
@@ -204,8 +212,8 @@ STRUCTURES: dict[str, Any] = {
     "fibrad_cast_rule": CastRule, "fibrad_exchange_rule": ExchangeRule, "fibrad_bed_rule": BedRule,
     "fibrad_factors": Factors, "fibrad_bed_matrix": BedMatrix, "fibrad_wall_rule": WallRule, "fibrad_wall_row": WallRow,
     "fibrad_heat_config": HeatConfig, "fibrad_law": Law, "fibrad_heat_result": HeatResult, "fibrad_light": Light,
-    "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult, "fibrad_span": Span,
-    "fibrad_contact_rule": ContactRule, "fibrad_contact_list": ContactList}
+    "fibrad_light_sources": LightSources, "fibrad_light_result": LightResult, "fibrad_store": Store,
+    "fibrad_span": Span, "fibrad_contact_rule": ContactRule, "fibrad_contact_list": ContactList}
 
 # what a function returns, and its arguments
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {

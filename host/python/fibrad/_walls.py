@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._errors import ARGUMENT, BACK, ENDLESS, GEOMETRY, Error, error_of, status_text, why_text
-from ._limits import LENGTH_MAX, POWER_MAX, TEMPERATURE_MAX
+from ._limits import CAPACITY_MAX, LENGTH_MAX, POWER_MAX, TEMPERATURE_MAX
 from ._scene import WHOLE, Mesh, Packing, period_of, pointer
 from ._structures import Plane, SceneConfig, Triangles, Wall as WallStructure
 from ._values import doubles, real, refuse
@@ -22,7 +22,7 @@ _PLANES = ("xmin", "xmax", "ymin", "ymax", "zmin", "zmax")  # 2 axis + upper
 _CYLINDERS = ("xcylinder", "ycylinder", "cylinder")  # by fibrad_wall.cylinder.along
 _OTHERS = {"zcylinder": "cylinder", **{x + end: x + name for x in "xyz" for end, name in (("lo", "min"), ("hi", "max"))}}
 _HEAT = ("temperature", "power", "insulated")  # a wall has one of these
-_VALUES = (*_HEAT, "emissivity", "absorptivity", "convection", "gas")
+_VALUES = (*_HEAT, "emissivity", "absorptivity", "convection", "gas", "capacity")
 _SIDES = ("auto", "normals", "both")
 _PLANE, _CYLINDER, _MESH = 1, 2, 3
 _NO_WALL = 2**32 - 1
@@ -53,7 +53,8 @@ Walls = Union[str, Wall, Iterable[Union[str, Wall]]]
 def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = False, name: Optional[str] = None,
          temperature: Any = None, power: Optional[float] = None, insulated: bool = False,
          emissivity: Optional[float] = None, absorptivity: Optional[float] = None,
-         convection: Optional[float] = None, gas: Optional[float] = None, scale: float = 1.0, sides: str = "auto") -> Wall:
+         convection: Optional[float] = None, gas: Optional[float] = None, capacity: Optional[float] = None,
+         scale: float = 1.0, sides: str = "auto") -> Wall:
     """A wall, for the argument ``walls``. The words of the program say the same:
     ``"zmin:temperature=1200:emissivity=0.8,zmax:open"``.
 
@@ -80,12 +81,14 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
         Of light from outside, 0 to 1. Default: the emissivity.
     convection, gas : float, optional
         [W/(m2 K)] Heat transfer coefficient to gas, and [K] temperature of this gas. Not of an endless wall.
+    capacity : float, optional
+        [J/K] In `Bed.advance` the wall stores heat: it begins at `temperature`, and may have a power, too.
     scale, sides
         Of "mesh:FILE", as for `Mesh.from_stl`.
     """
     kind, word, place = _shape(shape, name, (scale, sides))
     given = {"temperature": temperature, "power": power, "insulated": insulated or None, "emissivity": emissivity,
-             "absorptivity": absorptivity, "convection": convection, "gas": gas}
+             "absorptivity": absorptivity, "convection": convection, "gas": gas, "capacity": capacity}
     values = {key: value for key, value in given.items() if value is not None}
     useless = [key for key, use in (("at", at is not None and kind != "plane"), ("open", open and kind != "plane"),
                                     ("name", name is not None and kind != "mesh"),
@@ -94,7 +97,7 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
     if useless:
         raise refuse(f"wall {word}: {useless[0]} is of no use here")
     several = ["open", *values] if open else [key for key in _HEAT if key in values]
-    if len(several) > 1:
+    if len(several) > 1 and not (capacity is not None and several == ["temperature", "power"]):
         raise refuse(f"wall {word}: {' and '.join(several)} exclude each other")
     if at is not None:
         place = real(f"wall {word}: at", at, -LENGTH_MAX, LENGTH_MAX)
@@ -139,7 +142,7 @@ def _of_words(text: str) -> Iterator[Wall]:
                 keys["sides"] = key
             else:
                 raise refuse(f"wall {shape}: {word!r} is of no use here; there are at=, open, temperature=, power=, insulated, "
-                             f"emissivity=, absorptivity=, convection=, gas=, name=, scale=, {', '.join(_SIDES)}")
+                             f"emissivity=, absorptivity=, convection=, gas=, capacity=, name=, scale=, {', '.join(_SIDES)}")
         yield wall(shape, **keys)
 
 
@@ -313,9 +316,14 @@ class Container:
         some = any(np.isfinite(part).any() for part in parts)
         return kelvins, np.concatenate(parts).ravel() if some else None
 
-    def powers(self, walls: list[Wall]) -> Optional[NDArray[np.float64]]:
-        """[walls] powers that walls give off, NaN where none is given. None: no wall has one."""
-        given = [one.values.get("power") for one in walls]
+    def capacities(self, walls: list[Wall]) -> NDArray[np.float64]:
+        """[walls] heat capacities, 0 where none is given."""
+        return np.array([real(f"capacity of wall {one.name}", one.values.get("capacity", 0), 0, CAPACITY_MAX) for one in walls])
+
+    def powers(self, walls: list[Wall], storing: bool = False) -> Optional[NDArray[np.float64]]:
+        """[walls] powers that walls give off, NaN where none is given. Those of walls that have temperatures, too, count
+        if `storing`. None: no wall has one."""
+        given = [one.values.get("power") if storing or "temperature" not in one.values else None for one in walls]
         if given == [None] * len(walls):
             return None
         return np.array([math.nan if power is None else real(f"power of wall {one.name}", power, -POWER_MAX, POWER_MAX)
