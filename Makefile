@@ -25,7 +25,7 @@ TABLES     =
 # position independent, so that the archive also goes into shared objects; empty for machines without an operating system
 PIC        = -fPIC -fno-semantic-interposition
 # number in the name of the shared library: another one when a function or structure of the public headers changes
-ABI        = 1
+ABI        = 2
 # instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512, or neon
 MACHINE   := $(shell $(CC) -dumpmachine)
 ISAS      := scalar $(if $(filter x86_64% i%86%,$(MACHINE)),sse2 avx2 avx512) $(if $(filter aarch64%,$(MACHINE)),neon)
@@ -77,7 +77,7 @@ HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/% tables/%),$
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 # other machines, and what takes long: `make nightly`
-NIGHTLY := tests/check_dist.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
+NIGHTLY := tests/check_dist.sh tests/check_packages.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
            tests/test_furnace.c tests/test_reproduce.c
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
@@ -105,7 +105,7 @@ COUNT_PROGRAMS = $(COUNTED:%.c=$(BUILD)/%)
 ALL_BENCHES    = $(BENCH_PROGRAMS) $(PEER_PROGRAMS) $(COUNT_PROGRAMS)
 
 .PHONY: all lib lib-host lib-files dist demo reproduce test run-programs programs check symbols calls format house budget map structures bench bench-quick \
-    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci deps-nightly man install install-lib clean help need-libraries need-check
+    bench-peers bench-counted skips stress bits golden mutate fuzz fuzz-programs fuzz-fixed sanitized threads clang-warnings lint cppcheck nightly deps deps-ci deps-nightly man install install-lib wheel deb clean help need-libraries need-check
 
 ## all: build/fibrad and the libraries (the default)
 all: $(BUILD)/fibrad lib lib-host
@@ -458,6 +458,7 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	$(MAKE) reproduce FIGURES=$(BUILD)/figures
 	for csv in $(filter-out %/table1.csv,$(wildcard docs/figures/*.csv)); do diff -I ^table1, $$csv $(BUILD)/figures || exit 1; done
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
+	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/check_packages.sh
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
 	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
@@ -488,7 +489,8 @@ deps-ci:
 
 ## deps-nightly: install the further packages that nightly needs
 deps-nightly: deps deps-ci deps-couple
-	@$(DEPS) clang-tidy cppcheck gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user gcc-arm-none-eabi qemu-system-arm
+	@$(DEPS) clang-tidy cppcheck gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user gcc-arm-none-eabi qemu-system-arm \
+	    cmake dpkg-dev lintian
 
 ## man: manual pages of the program and its commands, made from --help into build/man
 man: $(BUILD)/man/fibrad.1
@@ -523,6 +525,19 @@ install-lib: lib lib-host
 	install -m 644 $(BUILD)/libfibrad.a $(BUILD)/libfibrad_host.a $(SHARED) $(DESTDIR)$(PREFIX)/lib
 	ln -sf $(notdir $(SHARED)) $(DESTDIR)$(PREFIX)/lib/libfibrad.so
 	$(call install_pc,$(PC_FILES))
+	install -d $(DESTDIR)$(PREFIX)/lib/cmake/fibrad
+	for part in fibradConfig fibradConfigVersion; do sed 's|@VERSION@|$(VERSION)|' host/packaging/$$part.cmake.in \
+	    > $(DESTDIR)$(PREFIX)/lib/cmake/fibrad/$$part.cmake || exit 1; done
+
+## wheel: build/wheel/fibrad-*.whl, the Python package for any Python from 3.9
+wheel: lib-host lib-files
+	rm -rf $(BUILD)/wheel && mkdir -p $(BUILD)/wheel
+	BUILD=$(abspath $(BUILD)) CC="$(CC)" /usr/bin/python3 -c "import sys; sys.path.insert(0, 'host/python/build_backend'); \
+	    import fibrad_build; print('$(BUILD)/wheel/' + fibrad_build.build_wheel('$(BUILD)/wheel'))"
+
+## deb: build/deb/*.deb, packages of the program, the libraries and Python for Debian
+deb: $(BUILD)/fibrad
+	BUILD=$(abspath $(BUILD)) MAKE="$(MAKE)" CC="$(CC)" host/packaging/make_deb.sh $(BUILD)/deb
 
 ## clean: remove all that was built
 clean:

@@ -74,6 +74,7 @@
  *   pair       two spheres with nothing in between      fibrad_pair_exact
  *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _wall_area, _sphere
  *              centres inside other spheres             fibrad_spheres_inside
+ *              clumps: what is exposed of a member      fibrad_clumps_size, fibrad_scene_exposed_area
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init
@@ -99,7 +100,7 @@
 extern "C" {
 #endif
 
-#define FIBRAD_VERSION "0.3.0"
+#define FIBRAD_VERSION "0.4.0"
 
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 
@@ -193,6 +194,8 @@ typedef struct fibrad_spheres {
     uint32_t n;                /* 0 to FIBRAD_SPHERES_MAX */
     uint32_t stride, stride_r; /* number of doubles from one sphere to the next; 0 means 1 */
     const uint64_t *id;        /* [n], ids seed random paths and decide ties; NULL: the index is the id */
+    const uint32_t *clump;     /* [n], number of the clump, a body of spheres that may lie within one another; 0: the
+                                  sphere is alone; NULL: there are no clumps */
 } fibrad_spheres;
 
 typedef enum fibrad_wall_kind {
@@ -313,7 +316,8 @@ typedef enum fibrad_why {
     FIBRAD_WHY_TOUCHED = 25,      /* A wall with a contact or a film is insulated, or its sides have temperatures. */
     FIBRAD_WHY_ALONE = 26,        /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
     FIBRAD_WHY_FILM = 27,         /* A film is negative or out of range, or the temperature of its gas is. */
-    FIBRAD_WHY_STREAM = 28        /* A stream has no such slice, or its inlet or capacities are out of range. */
+    FIBRAD_WHY_STREAM = 28,       /* A stream has no such slice, or its inlet or capacities are out of range. */
+    FIBRAD_WHY_CLUMP = 29         /* A clump touches its own image in the next period. */
 } fibrad_why;
 
 /* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */
@@ -328,8 +332,12 @@ typedef struct fibrad_fault {
 } fibrad_fault;
 
 /* Bytes that fibrad_scene_init needs for n spheres: 5 KB, 53 per sphere, and 8 more per sphere if ids is 1, for
- * fibrad_spheres.id. Triangles need more: fibrad_triangles_size. 0: n is above FIBRAD_SPHERES_MAX. */
+ * fibrad_spheres.id. Triangles need more: fibrad_triangles_size. Clumps need more: fibrad_clumps_size. 0: n is above
+ * FIBRAD_SPHERES_MAX. */
 size_t fibrad_scene_size(uint32_t n, int ids);
+
+/* Bytes that fibrad_spheres.clump adds to a scene of n spheres. 0: n is above FIBRAD_SPHERES_MAX. */
+size_t fibrad_clumps_size(uint32_t n);
 
 /* An upper bound of fibrad_scene_size(n, 0), for static memory. */
 #define FIBRAD_SCENE_BYTES(n) (5632 + (size_t)(n)*64)
@@ -337,16 +345,18 @@ size_t fibrad_scene_size(uint32_t n, int ids);
 /* Makes a scene.
  *
  * Centres on a periodic axis are moved into the box. The box begins at the least coordinate of all centres. Spheres
- * may overlap each other and the walls, as they do in settled beds. No centre may lie inside another sphere or beyond
- * a wall. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the wall at once.
- *   Input    memory[size]: at least fibrad_scene_size(n, ids) + fibrad_triangles_size(triangles, n) bytes
+ * may overlap each other and the walls, as they do in settled beds. No centre may lie beyond a wall, or inside another
+ * sphere that is not of the same clump. A part of a sphere may lie beyond a wall. Whatever leaves this part meets the
+ * wall at once. Members of a clump whose centres agree are moved apart by 1e-12 radii.
+ *   Input    memory[size]: at least fibrad_scene_size(n, ids) bytes, and fibrad_triangles_size(triangles, n) and
+ *            fibrad_clumps_size(n) if there are triangles and clumps
  *            config: NULL for all defaults
  *            spheres
  *   Output   scene: a pointer into memory
  *            fault: where an error is; may be NULL. After FIBRAD_OK `fault` is as before.
  *   Errors   _ARGUMENT, _SIZE, _ISA, _ENDLESS, _UNSUPPORTED (more than FIBRAD_WALLS_MAX walls)
- *            _GEOMETRY: a centre lies inside another sphere, a sphere reaches beyond an opening, or a period is less
- *            than the largest radius
+ *            _GEOMETRY: a centre lies inside another sphere, a sphere reaches beyond an opening, a period is less than
+ *            the largest radius, or a clump touches its own image
  *            After an error an earlier scene in the same memory may be lost.
  *   Cost     0.5 microseconds per sphere. Clusters that lie far apart take longer, O(n^2) at worst.
  *   Source   docs/methods.md section 6 */
@@ -376,10 +386,23 @@ typedef struct fibrad_scene_facts {
     double overlap_max;            /* largest overlap of two spheres, divided by the smaller radius; 0: none overlap */
     uint32_t overlap_pair[2];      /* the two spheres of the largest overlap */
     uint32_t triangles;            /* number of triangles */
+    uint32_t clumps;               /* number of clumps */
+    uint32_t covered;              /* number of members without a surface: they lie within other members */
+    uint32_t covered_sphere;       /* one of them */
+    uint32_t parted;               /* number of clumps in parts that do not touch, with gaps above .001 radii */
+    uint32_t parted_pair[2];       /* two members of such a clump, of different parts */
 } fibrad_scene_facts;
 
 /* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
+
+/* Area of a sphere that no other member of its clump hides [L^2]. It is exact to rounding, or to 1e-9 r^2 if circles in
+ * which members cut nearly agree. Walls and other spheres hide nothing of it. For a sphere that is alone this is
+ * 4 pi r^2.
+ *   Input    i: 0 to spheres - 1
+ *   Output   NaN: i is out of range, or the scene is not complete
+ *   Source   docs/methods.md section 5 */
+double fibrad_scene_exposed_area(const fibrad_scene *scene, uint32_t i);
 
 /* Area of a wall or an opening [L^2]: the part that bounds the container, in one period. For a mesh this is the sum
  * over all sides that belong to the wall.
@@ -441,7 +464,7 @@ typedef struct fibrad_row {
     uint32_t directions; /* out: number of directions of a row along directions, else 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
-    uint32_t lines;      /* out: number of lines of a row along lines, else 0 */
+    uint32_t lines;      /* out: number of lines of a row along lines, else 0; with clumps also of directions */
     float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
                             lines; infinity: the factor is exact, since nothing can come between both spheres. May be
                             NULL. Rows in a collection keep it. */
@@ -610,6 +633,8 @@ typedef struct fibrad_matrix_rule {
     uint32_t tasks;                  /* into how many tasks `parallel` divides, 1 to 1024; changes no bit; 0: 1 */
     const fibrad_wall_row *wall_row; /* [walls], copied; rows of endless walls are not read; NULL: no rows of walls */
     const double *wall_emissivity;   /* [walls], 0 to 1, read if wall_row is set; NULL: 1 */
+    uint32_t bodies;                 /* number of bodies, if rows and columns are bodies, such as clumps; 0: spheres */
+    const double *area;              /* L^2, [bodies], of their surfaces, above 0 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */
 } fibrad_matrix_rule;
@@ -648,7 +673,8 @@ size_t fibrad_matrix_size(const fibrad_scene *scene, const fibrad_rows *rows, ui
 
 /* Begins a matrix from all rows of a scene. Each sphere has one row, in any of the collections.
  *   Input    memory[size]
- *            rows[count]: collections; must not change until fibrad_matrix_close has returned
+ *            rows[count]: collections; must not change until fibrad_matrix_close has returned; rows of bodies are
+ *            those of fibrad_rows_add
  *            rule: NULL for all defaults
  *   Output   matrix: a pointer into memory
  *            sphere: the sphere whose row is missing or repeated; may be NULL

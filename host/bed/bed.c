@@ -201,6 +201,7 @@ void bed_free(struct bed *bed) {
     free(bed->r);
     free(bed->line);
     free(bed->id);
+    free(bed->clump);
     free(bed->extra);
     free(bed->kept);
     free(bed->kept_at);

@@ -12,6 +12,7 @@ struct bed {
     double *x, *y, *z, *r; /* [n] centres and radii, in the unit of the file */
     uint64_t *line;        /* [n] line of each sphere in the file, from 1; 0: VTK files have no lines */
     int64_t *id;           /* [n] ascending, from 0, all different; if ids */
+    uint32_t *clump;       /* [n] number of the clump, 0: the sphere is alone; NULL: there are no clumps */
     double *extra;         /* [n][extras] columns that options name */
     size_t extras;
     const char *kept_names; /* names of columns kept as text, with blanks in between; owned by the reader; NULL: none */
@@ -72,5 +73,14 @@ int bed_sort(struct bed *bed, const char *file);
 void bed_clear(struct bed *bed);
 
 void bed_free(struct bed *bed);
+
+/* Takes the numbers of clumps from a further column. lone: -1, which LIGGGHTS writes, stands for 0. Status 0,
+ * STATUS_MEMORY, or STATUS_INPUT naming the line of a number that is not whole or out of range. */
+int bed_take_clumps(struct bed *bed, const char *file, size_t extra, bool lone);
+
+/* Makes a bed of n bodies. A clump has the mean centre of its members, and the radius of a sphere of its exposed area.
+ * Its id is its number. If a sphere that is alone has such a number, all clumps have the ids of their first members
+ * instead. body [bed->n]: of each sphere; area [n]. Free `bodies` also after an error. Status 0 or STATUS_MEMORY. */
+int bed_bodies(const struct bed *bed, uint32_t n, const uint32_t *body, const double *area, struct bed *bodies);
 
 #endif

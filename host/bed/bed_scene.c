@@ -12,7 +12,8 @@ fibrad_spheres bed_spheres(const struct bed *bed) {
                             .z = bed->z,
                             .r = bed->r,
                             .n = bed->n,
-                            .id = bed->ids ? (const uint64_t *)bed->id : NULL};
+                            .id = bed->ids ? (const uint64_t *)bed->id : NULL,
+                            .clump = bed->clump};
 }
 
 fibrad_scene_config bed_scene(const struct bed *bed, const struct walls *walls) {
@@ -55,6 +56,10 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
     if (!status) return STATUS_OK;
     if (status == FIBRAD_E_CANCELLED) return interrupt_status();
     if (status == FIBRAD_E_MEMORY) return message_memory();
+    if (status == FIBRAD_E_GEOMETRY && fault->why == FIBRAD_WHY_CLUMP)
+        return message_at(STATUS_INPUT, file, bed->line[first],
+                          "sphere %lld: its clump %u touches its own image, so the periodic box is too small for it",
+                          (long long)bed_name(bed, first), bed->clump[first]);
     if (status == FIBRAD_E_GEOMETRY && known) return bed_overlap(bed, file, first, second);
     if (status == FIBRAD_E_GEOMETRY)
         return message_at(STATUS_INPUT, file, 0, "the periodic box is smaller than a sphere's radius");

@@ -85,7 +85,7 @@ static const struct option *find_option(const struct option *table, const char *
     return NULL;
 }
 
-/* Options that have another form since 0.3.0. */
+/* Options that have another form since 0.3.0, or are of another command. */
 static const struct {
     const char *old, *now;
 } renamed[] = {{"wall-temperature", "--wall-temperature zmin=1200 is now --wall zmin:temperature=1200"},
@@ -95,6 +95,9 @@ static const struct {
                {"every", "--every 60 is now --times every:60"},
                {"model", "--model is not needed any more: powers at one time are by patches, in time by factors that "
                          "patches correct"},
+               {"members",
+                "--members is of fibrad heat --clump: rows of single members hold what passes inside the clump, "
+                "and only their sums are factors"},
                {"nf", "--method surface and --nf are of fibrad pair and fibrad reproduce"}};
 
 static int unknown_option(const struct walk *walk, const char *text, size_t length) {

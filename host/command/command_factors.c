@@ -71,6 +71,7 @@ static const struct option factors_table[] = {
      TO_FLAG(struct factors_request, raw)},
     {0, "drop", "D", "drop pairs of entries if both are below D, and enlarge the others; rows stay closed [0]",
      TO_NUMBER(struct factors_request, options.drop, 0, 1)},
+    {OPTION_CLUMP},
     {OPTION_SOLID_CONDUCTIVITY(struct factors_request, solid)},
     {0, "temperature", "T",
      "mean temperatures of the spheres, for --solid-conductivity; a number, or TYPE:T,..., or a column of the file",
@@ -127,6 +128,11 @@ static int factors_help(void) {
             "A_i = 4 pi r_i^2 in square metres and T in kelvins. A sphere of emissivity 0 reflects everything. It has "
             "no\n"
             "row and no column. --rays and --seed are then those of paths.\n",
+            "--clump: A clump is one body: its spheres may lie within one another, and what they hide of each other\n"
+            "is no surface. It has one row and one column, by the number of the clump; F_ii is what it sends to\n"
+            "itself. `A_i` is the area that is exposed. If a sphere that is alone has such a number for its id, "
+            "clumps\n"
+            "have the ids of their first spheres.\n",
             "--solid-conductivity: Temperatures differ from point to point of each sphere. Then n_i takes the place "
             "of\n"
             "e_i (`node_emissivity` in .npz and .json), and N_i takes the place of sigma T_i^4. The net power q_i of\n"
@@ -144,6 +150,7 @@ static int factors_help(void) {
         "  fibrad factors packing.dump --emissivity 1:0.8,2:0.3 --wall auto:emissivity=0.9 -o D.csv\n"
         "  fibrad factors spheres.csv --periodic 12,12,0 --wall zmin:at=0 -o F.csv\n"
         "  fibrad factors pebbles.csv --length-unit m --emissivity 0.8 --temperature T --solid-conductivity 30\n"
+        "  fibrad factors settled.dump --clump id_multisphere -o F.npz\n"
         "  fibrad factors packing.dump.gz --frame all -o 'F.*.npz'\n");
     return STATUS_OK;
 }
@@ -211,6 +218,11 @@ static int factors_check(struct factors_request *request) {
     const int status = bed_options_check(&request->bed, "factors", CONTENT_MATRIX);
     if (status) return status;
     request->options.raw = request->raw || request->targets;
+    if (request->bed.clump.given && (request->emissivity.given || request->targets))
+        return message(STATUS_USAGE,
+                       request->targets ? "--targets: rows of clumps are computed all together; leave it out"
+                                        : "--emissivity: exchange factors of clumps are not computed; leave it out, or "
+                                          "use fibrad heat");
     if (request->options.drop > 0 && request->options.raw)
         return message(STATUS_USAGE, "--drop needs rows that are averaged, not --raw or --targets");
     return request->emissivity.given ? choose_exchange(request) : choose_view(request);
@@ -275,11 +287,11 @@ static void report_view(struct factors_request *request, const struct contents *
     if (request->cutoff > 0) report_value(report, "cutoff", request->cutoff, 9);
 }
 
-static void factors_report(struct factors_request *request, const struct contents *what,
+static void factors_report(struct factors_request *request, const struct bed *bed, const struct contents *what,
                            const struct summary *summary) {
     const fibrad_bed_matrix *factors = what->factors;
     struct report *report = &request->bed.report;
-    bed_options_report(&request->bed, what->bed, what->walls, &factors->facts);
+    bed_options_report(&request->bed, bed, what->walls, &factors->facts);
     if (what->grey)
         report_exchange(request, what);
     else
@@ -333,18 +345,24 @@ static int write_matrix(struct factors_request *request, struct bed *bed) {
     fibrad_bed_matrix *factors = NULL;
     struct side_arrays views = {0};
     struct summary summary;
+    struct bed bodies = {0};
     int status = bed_options_make(&request->bed, bed, &request->walls, &made);
     if (!status) status = bed_options_factors(&request->bed, bed, &request->walls, made, &request->options, &factors);
     if (!status && request->bed.wall_vtp && !request->emissivity.given) status = find_views(request, bed, made, &views);
-    struct contents what = {.factors = factors, .walls = &request->walls, .of_sides = &views};
+    const bool clumps = factors && factors->body;
+    struct contents what = {.bed = bed, .factors = factors, .walls = &request->walls, .of_sides = &views};
     what.wanted = request->options.wanted, what.grey = request->options.exchange;
-    if (!status) status = bed_options_write(&request->bed, bed, &what);
+    if (!status && clumps) status = bed_bodies(bed, factors->matrix.n, factors->body, factors->area, &bodies);
+    const struct array exposed = {"area.npy", "f8", clumps ? factors->area : NULL, bodies.n, 0};
+    what.array = &exposed, what.arrays = clumps;
+    if (!status) status = bed_options_write(&request->bed, clumps ? &bodies : bed, &what);
     if (!status && request->bed.outputs.picture)
         status = plot_bed(&request->bed.picture, request->bed.name, &what, &request->bed.slice);
     if (!status) {
         summary_make(&summary, &what);
-        factors_report(request, &what, &summary);
+        factors_report(request, bed, &what, &summary);
     }
+    bed_free(&bodies);
     side_arrays_free(&views);
     fibrad_bed_matrix_free(factors);
     fibrad_bed_free(made);

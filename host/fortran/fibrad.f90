@@ -92,7 +92,7 @@ module fibrad
     type, bind(C) :: fibrad_spheres
         type(c_ptr) :: x = c_null_ptr, y = c_null_ptr, z = c_null_ptr, r = c_null_ptr
         integer(c_int32_t) :: n = 0, stride = 0, stride_r = 0
-        type(c_ptr) :: id = c_null_ptr
+        type(c_ptr) :: id = c_null_ptr, clump = c_null_ptr
     end type fibrad_spheres
 
     type, bind(C) :: fibrad_fault
@@ -112,7 +112,8 @@ module fibrad
         integer(c_int) :: isa = 0
         integer(c_int32_t) :: cells = 0
         real(c_double) :: radius_min = 0, radius_max = 0, overlap_max = 0
-        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0
+        integer(c_int32_t) :: overlap_pair(2) = 0, triangles = 0, clumps = 0, covered = 0, covered_sphere = 0, &
+            parted = 0, parted_pair(2) = 0
     end type fibrad_scene_facts
 
     type, bind(C) :: fibrad_warning
@@ -167,7 +168,7 @@ module fibrad
     type, bind(C) :: fibrad_bed_matrix
         type(fibrad_factors) :: matrix
         type(fibrad_scene_facts) :: facts
-        type(c_ptr) :: wall_area = c_null_ptr
+        type(c_ptr) :: body = c_null_ptr, area = c_null_ptr, wall_area = c_null_ptr
         integer(c_int) :: threads = 0
         integer(c_int32_t) :: directions = 0
         integer(c_int64_t) :: fallbacks = 0, rays = 0

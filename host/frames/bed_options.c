@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* strverscmp; NOLINT(bugprone-reserved-identifier) */
 #include "frames/bed_options.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <glob.h>
 #include <math.h>
@@ -17,6 +18,13 @@
 
 int bed_radius_option(const char *text, void *radius) {
     return quantity_option("--radius", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, radius);
+}
+
+int bed_clump_option(const char *text, void *clump) {
+    struct quantity *quantity = clump;
+    *quantity = (struct quantity){.given = true, .column = text};
+    if (isalpha((unsigned char)*text) || *text == '_') return STATUS_OK;
+    return message(STATUS_USAGE, "--clump: '%.60s' is not the name of a column", text);
 }
 
 int bed_period_option(const char *text, void *bed_options) {
@@ -132,6 +140,7 @@ int bed_options_check(struct bed_options *options, const char *command, enum con
     options->progress.quiet = options->quiet;
     if (options->files == 0) return message(STATUS_USAGE, "FILE is missing; see fibrad %s --help", command);
     bed_options_quantity(options, &options->radius, UNIT_OF_LENGTH);
+    bed_options_quantity(options, &options->clump, NULL);
     if (picture && !plot_ending(picture))
         return message_at(STATUS_USAGE, picture, 0, "unknown ending; there are .svg and .png");
     if (picture && is_series(options)) return message(STATUS_USAGE, "--plot shows one frame; choose it by --frame");
@@ -154,10 +163,14 @@ static int complete_bed(struct bed_options *options, struct bed *bed) {
         snprintf(bed->units, sizeof bed->units, "%s", options->length_unit); /* outputs show the unit */
     const char *unit = bed_options_unit(options, bed);
     if (!unit || !unit_of_length(unit, &bed->metres)) bed->metres = 0;
-    if (!options->radius.given) return STATUS_OK;
+    const struct quantity *clump = &options->clump;
+    int status = STATUS_OK;
+    if (clump->given)
+        status = bed_take_clumps(bed, options->name, clump->index, strcmp(clump->column, "id_multisphere") == 0);
+    if (status || !options->radius.given) return status;
     double *radius; /* copied: bed->r has room for larger frames, which must stay */
-    const int status = quantity_values(&options->radius, bed, options->name, "radius", 0, FIBRAD_LENGTH_MIN,
-                                       FIBRAD_LENGTH_MAX, &radius);
+    status = quantity_values(&options->radius, bed, options->name, "radius", 0, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX,
+                             &radius);
     if (!status) memcpy(bed->r, radius, bed->n * sizeof *radius);
     free(radius);
     return status;
@@ -270,7 +283,7 @@ static int check_room(struct bed_options *options, const struct bed *bed, fibrad
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
     some.wanted = marks;
     int status = compute_factors(options, bed, made, &some, &factors);
-    const double bytes = status ? 0 : (double)factors->matrix.start[bed->n] / SAMPLE * bed->n * ENTRY_BYTES;
+    const double bytes = status ? 0 : (double)factors->matrix.start[factors->matrix.n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
         status = rows->scratch
                      ? disk_check(rows->scratch, bytes)
@@ -367,6 +380,7 @@ void bed_options_report(struct bed_options *options, const struct bed *bed, cons
     if (bed->timestep >= 0) report_whole(report, "timestep", bed->timestep);
     report_count(report, "spheres", bed->n);
     report_text(report, "named_by", bed->ids ? "ids" : "positions");
+    if (facts && options->clump.given) report_count(report, "clumps", facts->clumps);
     report_text(report, "length_unit", unit ? unit : bed->units[0] ? bed->units : "not said");
     if (facts) report_value(report, "radius_min", facts->radius_min, 6);
     if (facts) report_value(report, "radius_max", facts->radius_max, 6);

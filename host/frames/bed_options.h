@@ -43,6 +43,11 @@
         0, "positions", NULL, "name spheres by their positions in the file, from 0 [by ids]",                          \
             TO_FLAG(struct bed_options, positions)                                                                     \
     }
+#define OPTION_CLUMP                                                                                                   \
+    0, "clump", "COLUMN",                                                                                              \
+        "column of the numbers of clumps, id_multisphere, mol or clumpId for example: spheres of one number above 0 "  \
+        "are one body and may lie within one another [none]",                                                          \
+        TO_FUNCTION(bed_clump_option, struct bed_options, clump)
 #define OPTIONS_RUN                                                                                                    \
     {OPTION_THREADS(struct bed_options, threads)},                                                                     \
         {0, "json", "OUT", "write the summary as JSON, with all digits [none]",                                        \
@@ -95,7 +100,7 @@ struct bed_options {
     double period[3];
     bool positions;
     struct column_options columns_of_file;
-    struct quantity radius;
+    struct quantity radius, clump;
     const char *length_unit;             /* NULL: not given */
     const char *column[BED_COLUMNS_MAX]; /* [columns] columns of the file that options name */
     const char *unit[BED_COLUMNS_MAX];   /* [columns] unit that the file must not contradict; NULL: none */
@@ -120,8 +125,8 @@ struct bed_options {
 };
 
 /* Functions of the rows above. Status 0, STATUS_USAGE, STATUS_FILE or STATUS_MEMORY. */
-option_take bed_files_option, bed_radius_option, bed_unit_option, bed_period_option, bed_frames_option,
-    bed_meshes_option, bed_scratch_option;
+option_take bed_files_option, bed_radius_option, bed_clump_option, bed_unit_option, bed_period_option,
+    bed_frames_option, bed_meshes_option, bed_scratch_option;
 
 /* Asks for the column of a quantity, if it has one, and sets quantity->index. unit: expected unit of the values; NULL:
  * none. Quantities without a unit may share a column, such as that of types. */

@@ -44,7 +44,7 @@ enum kind {
 
 /* Whether a kind of warning is the first of its kind. Marks the kind as printed. */
 static bool is_new(struct warned *warned, enum kind kind) {
-    const unsigned bit = 1u << kind;
+    const uint64_t bit = UINT64_C(1) << kind;
     const bool new = !(warned->kinds & bit);
     warned->kinds |= bit;
     return new;
@@ -74,6 +74,17 @@ static void word_places(const struct warned *warned, const struct bed *bed, cons
         WARN(0, "sphere %lld%s and sphere %lld%s overlap by %.3g of a radius, so their view factors err by about %.1g",
              (long long)bed_name(bed, w->first), bed_line_text(bed, w->first, place[0]),
              (long long)bed_name(bed, w->second), bed_line_text(bed, w->second, place[1]), w->value, w->other);
+    if (w->code == FIBRAD_WARNING_PARTED)
+        WARN(
+            bed->line[w->second],
+            "sphere %lld and sphere %lld%s are of one clump, and its parts do not touch (%u such clumps in all); it is "
+            "one body all the same",
+            (long long)bed_name(bed, w->second), (long long)bed_name(bed, w->first),
+            bed_line_text(bed, w->first, place[0]), w->count);
+    if (w->code == FIBRAD_WARNING_COVERED)
+        WARN(bed->line[w->first],
+             "sphere %lld lies within other spheres of its clump (%u such spheres in all), so it has no surface",
+             (long long)bed_name(bed, w->first), w->count);
     if (w->code == FIBRAD_WARNING_CUT)
         WARN(bed->line[w->first],
              "sphere %lld reaches through the wall %s by %.2g of its radius (%u such cases in all); is "

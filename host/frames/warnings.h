@@ -16,7 +16,7 @@
 /* Warnings of a run so far. Begin with zeroes. */
 struct warned {
     const char *file; /* name of the current file, for messages */
-    unsigned kinds;   /* bits: kinds of warnings that have been printed */
+    uint64_t kinds;   /* bits: kinds of warnings that have been printed */
     int64_t frames;   /* frames so far */
     int64_t timestep; /* of the last frame; -1: it has none */
     bool ids;         /* spheres of the last frame have ids */

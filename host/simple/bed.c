@@ -58,6 +58,7 @@ static size_t copy_given(struct given *given, char *place) {
     copy_doubles(&place, &count, &s->y, s->n, stride);
     copy_doubles(&place, &count, &s->z, s->n, stride);
     copy_doubles(&place, &count, &s->r, s->n, stride_r);
+    copy_bytes(&place, &count, (const void **)&s->clump, s->clump ? s->n * sizeof *s->clump : 0);
     copy_bytes(&place, &count, (const void **)&given->config.wall, given->config.walls * sizeof *given->config.wall);
     copy_doubles(&place, &count, &t->x, t->vertices, stride_t);
     copy_doubles(&place, &count, &t->y, t->vertices, stride_t);
@@ -89,16 +90,19 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     fibrad_scene *scene;
     void *block;
     struct given *given = NULL;
+    fibrad_bodies *bodies = NULL;
     const uint32_t n = spheres->n;
     bed->fault = (fibrad_fault){n, n, UINT32_MAX, 0, 0};
     if (bed->scene && (n != bed->facts.spheres || (config ? config->walls : 0) != bed->facts.walls))
         return FIBRAD_E_ARGUMENT;
     int status = fibrad_heap_scene(&scene, &block, config, spheres, &bed->fault);
     if (!status) status = keep_given(config, spheres, &given);
+    if (!status) status = fibrad_bodies_find(scene, spheres, &bodies);
     if (!status && bed->heat) status = fibrad_heat_move(bed->heat, scene);
     if (status && status != FIBRAD_E_SIZE) {
         free(block);
         free(given);
+        free(bodies);
         return status;
     }
     if (status) { /* the moved walls need a larger block */
@@ -107,7 +111,8 @@ static int place_bed(fibrad_bed *bed, const fibrad_scene_config *config, const f
     }
     free(bed->scene_block);
     free(bed->given);
-    bed->scene = scene, bed->scene_block = block, bed->given = given;
+    free(bed->bodies);
+    bed->scene = scene, bed->scene_block = block, bed->given = given, bed->bodies = bodies;
     bed->config = given->config, bed->spheres = given->spheres;
     bed->traced = false;
     fibrad_scene_describe(scene, &bed->facts);
@@ -154,6 +159,7 @@ void fibrad_bed_free(fibrad_bed *bed) {
     free(bed->heat_block);
     free(bed->scene_block);
     free(bed->given);
+    free(bed->bodies);
     free(bed->light);
     free(bed->places);
     free(bed);

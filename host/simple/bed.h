@@ -2,6 +2,7 @@
 #ifndef FIBRAD_SIMPLE_BED_H
 #define FIBRAD_SIMPLE_BED_H
 
+#include "simple/bodies.h"
 #include "simple/network.h"
 #include "simple/store.h"
 #include "simple/team.h"
@@ -54,8 +55,9 @@ struct fibrad_bed {
     fibrad_scene_config config; /* what was given, copied into `given`, for searches of the host */
     fibrad_spheres spheres;
     void *given;
-    const char *scratch; /* a folder for rows and matrix of the present call; NULL: in memory */
-    double begun;        /* time at which the present call for factors began [s] */
+    const char *scratch;   /* a folder for rows and matrix of the present call; NULL: in memory */
+    double begun;          /* time at which the present call for factors began [s] */
+    fibrad_bodies *bodies; /* NULL: there are no clumps */
     /* ---- heat ---- */
     fibrad_heat_config beams; /* how finely heat is resolved */
     fibrad_heat *heat;        /* NULL: none yet */

@@ -1,5 +1,6 @@
 /* factors.c - view factors and exchange factors of whole beds. SPDX-License-Identifier: MIT */
 #include <omp.h>
+#include <stdlib.h>
 
 #include "simple/rows.h"
 
@@ -130,13 +131,30 @@ static int run_exchange(fibrad_bed *bed, const fibrad_bed_rule *options, fibrad_
     return run_rule(bed, row_by_paths, rule, options, &how, factors);
 }
 
-static int factors_now(fibrad_bed *bed, const fibrad_bed_rule *rule, fibrad_bed_matrix **matrix) {
+/* Marks all spheres of the bodies of which one is marked. Free the copy. */
+static int mark_bodies(const fibrad_bed *bed, unsigned char **marks, fibrad_bed_rule *rule) {
+    const fibrad_bodies *bodies = bed->bodies;
+    const uint32_t n = bed->facts.spheres;
+    *marks = calloc((size_t)n + bodies->n + 1, 1);
+    if (!*marks) return FIBRAD_E_MEMORY;
+    for (uint32_t i = 0; i < n; ++i) (*marks)[n + bodies->body[i]] |= rule->wanted[i] != 0;
+    for (uint32_t i = 0; i < n; ++i) (*marks)[i] = (*marks)[n + bodies->body[i]];
+    rule->wanted = *marks;
+    return FIBRAD_OK;
+}
+
+static int factors_now(fibrad_bed *bed, const fibrad_bed_rule *given, fibrad_bed_matrix **matrix) {
+    fibrad_bed_rule rule = *given;
+    unsigned char *marks = NULL;
     bed->begun = omp_get_wtime();
-    bed->scratch = rule->scratch;
-    int status = check_rule(rule);
-    if (!status) status = fibrad_team_scratch(&bed->team, rule->scratch);
-    if (!status) status = rule->exchange ? run_exchange(bed, rule, matrix) : run_options(bed, rule, matrix);
+    bed->scratch = rule.scratch;
+    int status = check_rule(&rule);
+    if (!status && bed->bodies && rule.exchange) status = FIBRAD_E_UNSUPPORTED;
+    if (!status && bed->bodies && rule.wanted) status = mark_bodies(bed, &marks, &rule);
+    if (!status) status = fibrad_team_scratch(&bed->team, rule.scratch);
+    if (!status) status = rule.exchange ? run_exchange(bed, &rule, matrix) : run_options(bed, &rule, matrix);
     fibrad_team_forget(&bed->team);
+    free(marks);
     if (!status) fibrad_bed_warn_of_rows(bed, &(*matrix)->matrix);
     return status;
 }

@@ -92,22 +92,25 @@ void fibrad_bed_describe(const fibrad_bed *bed, fibrad_scene_facts *facts, fibra
 /* What in a bed, in its factors or in its sources is probably a mistake. Results are computed all the same. `first`,
  * `second`, `wall`, `count`, `value` and `other` are the fields of fibrad_warning that a code uses. */
 typedef enum fibrad_warning_code {
-    FIBRAD_WARNING_OVERLAP = 1,     /* Spheres `first` and `second` overlap by `value` smaller radii, above .05. Factors
-                                       of the smaller one err by about `other`. */
-    FIBRAD_WARNING_CUT = 2,         /* Sphere `first` reaches through `wall`, a plane or cylinder, by `value` radii.
-                                       `count` spheres reach through one by more than .1. */
-    FIBRAD_WARNING_MESH_SIZE = 3,   /* `wall` has the length `value` and the bed `other`: 200 times more or less. */
-    FIBRAD_WARNING_MESH_PLACE = 4,  /* `wall` lies from `value` to `other` along axis `first`, away from the bed. */
-    FIBRAD_WARNING_COLD = 5,        /* The warmest sphere has `value`, below 150 K: degrees Celsius? */
-    FIBRAD_WARNING_ZERO = 6,        /* Sphere `first`, one of `count`, has 0 K. Others have up to `value`. */
-    FIBRAD_WARNING_AROUND = 7,      /* `wall`, or the surroundings, have `value`, 5 to 75 K: degrees Celsius? */
-    FIBRAD_WARNING_SURFACE = 8,     /* The coldest place of sphere `first` comes out at `value`, below 0 K. */
-    FIBRAD_WARNING_STORE = 9,       /* Sphere `first` stores `value` J/(m3 K), if L is the metre: no solid does. */
-    FIBRAD_WARNING_OPEN_ROWS = 10,  /* Sums of rows of walls differ from 1 by `value`. */
-    FIBRAD_WARNING_APART = 11,      /* Sums of rows of walls differed from 1 by `value` before they were closed. */
-    FIBRAD_WARNING_CHANGED_ROW = 12 /* Closing has changed row `first` by `value` times its error. */
+    FIBRAD_WARNING_OVERLAP = 1,    /* Spheres `first` and `second` overlap by `value` smaller radii, above .05. Factors
+                                      of the smaller one err by about `other`. */
+    FIBRAD_WARNING_CUT = 2,        /* Sphere `first` reaches through `wall`, a plane or cylinder, by `value` radii.
+                                      `count` spheres reach through one by more than .1. */
+    FIBRAD_WARNING_MESH_SIZE = 3,  /* `wall` has the length `value` and the bed `other`: 200 times more or less. */
+    FIBRAD_WARNING_MESH_PLACE = 4, /* `wall` lies from `value` to `other` along axis `first`, away from the bed. */
+    FIBRAD_WARNING_COLD = 5,       /* The warmest sphere has `value`, below 150 K: degrees Celsius? */
+    FIBRAD_WARNING_ZERO = 6,       /* Sphere `first`, one of `count`, has 0 K. Others have up to `value`. */
+    FIBRAD_WARNING_AROUND = 7,     /* `wall`, or the surroundings, have `value`, 5 to 75 K: degrees Celsius? */
+    FIBRAD_WARNING_SURFACE = 8,    /* The coldest place of sphere `first` comes out at `value`, below 0 K. */
+    FIBRAD_WARNING_STORE = 9,      /* Sphere `first` stores `value` J/(m3 K), if L is the metre: no solid does. */
+    FIBRAD_WARNING_OPEN_ROWS = 10, /* Sums of rows of walls differ from 1 by `value`. */
+    FIBRAD_WARNING_APART = 11,     /* Sums of rows of walls differed from 1 by `value` before they were closed. */
+    FIBRAD_WARNING_CHANGED_ROW = 12, /* Closing has changed the row of sphere `first` by `value` times its error. */
+    FIBRAD_WARNING_PARTED = 13, /* Spheres `first` and `second` are of one clump, one of `count`, whose parts do not
+                                   touch. It is one body all the same. */
+    FIBRAD_WARNING_COVERED = 14 /* Sphere `first`, one of `count`, lies within other members, so it has no surface. */
 } fibrad_warning_code;
-#define FIBRAD_WARNINGS_MAX 12
+#define FIBRAD_WARNINGS_MAX 14
 
 typedef struct fibrad_warning {
     int code;               /* a fibrad_warning_code */
@@ -146,6 +149,11 @@ void fibrad_bed_free(fibrad_bed *bed);
  * Rows of walls are computed if walls is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
+ * With clumps (fibrad_spheres.clump) a clump is one body with one row and one column. Bodies are in the order of their
+ * first spheres. A_C F_CD is the sum of A_i F_ij over members, with the whole areas A_i of spheres and the exposed area
+ * A_C. F_CC is what the row lacks of 1, not below 0. A body's row is computed if one of its spheres is wanted. Exchange
+ * factors of clumps are FIBRAD_E_UNSUPPORTED.
+ *
  * Raw rows are those before averaging. Files in the scratch folder take 48 bytes for each entry of raw rows along
  * lines: 16 for the rows and 32 for the matrix. Entries of other rows take 36: 12 and 24. Files of rows may be up to
  * twice as large. */
@@ -162,8 +170,10 @@ typedef struct fibrad_bed_rule {
 
 /* A matrix of factors, and facts of its computation. */
 typedef struct fibrad_bed_matrix {
-    fibrad_factors matrix;    /* a row that is not wanted is empty */
+    fibrad_factors matrix;    /* a row that is not wanted is empty; rows and columns are bodies if there are clumps */
     fibrad_scene_facts facts; /* of the scene */
+    const uint32_t *body;     /* [spheres], the row of each sphere; NULL: there are no clumps, row i is of sphere i */
+    const double *area;       /* L^2, [matrix.n], of which a row is; NULL: there are no clumps, it is 4 pi r^2 */
     const double *wall_area;  /* L^2, [walls], as fibrad_scene_wall_area */
     int threads;              /* threads used */
     uint32_t directions;      /* largest number of directions of a row, or lines; 0: the method has none */

@@ -34,6 +34,7 @@ struct search {
     double low[3], high[3]; /* of all centres */
     double (*at)[4];        /* [spheres], centre, within the period, and radius */
     double (*sorted)[4];    /* the same in the order of `celled` */
+    const uint32_t *clump;  /* [spheres], as in fibrad_spheres; NULL: none */
     uint32_t n;
     struct celled *celled;
     struct size_class class[CLASSES_MAX];
@@ -153,7 +154,7 @@ struct looking {
 };
 
 /* Takes a smaller sphere that is near enough. Of two equal ones the one with the larger number looks for the other. A
- * sphere and its own image conduct nothing. */
+ * sphere and its own image conduct nothing, nor do members of one clump. */
 static int take_pair(const struct looking *from, const struct search *s, uint32_t k) {
     const uint32_t other = s->celled[k].sphere;
     const double r = s->at[from->sphere][3], *o = s->sorted[k], reach = r + o[3] + reach_of(s, o[3]);
@@ -163,6 +164,7 @@ static int take_pair(const struct looking *from, const struct search *s, uint32_
         return FIBRAD_OK;
     const double distance = length_of(x, y, z);
     if (distance >= reach) return FIBRAD_OK;
+    if (s->clump && s->clump[other] != 0 && s->clump[other] == s->clump[from->sphere]) return FIBRAD_OK;
     return fibrad_contact_add(s->found, &(struct contact_found){from->sphere, other, distance, r, o[3]});
 }
 
@@ -266,7 +268,7 @@ int fibrad_contacts_find(const fibrad_scene_config *config, const fibrad_spheres
         (spheres->n > 0 && !(spheres->x && spheres->y && spheres->z && spheres->r)))
         return FIBRAD_E_ARGUMENT;
     struct contact_block found = {.n = 0};
-    struct search s = {.rule = rule, .n = spheres->n, .found = &found};
+    struct search s = {.rule = rule, .n = spheres->n, .clump = spheres->clump, .found = &found};
     s.at = malloc(2 * (s.n + (size_t)1) * sizeof *s.at), s.celled = malloc((s.n + (size_t)1) * sizeof *s.celled);
     s.sorted = s.at + s.n;
     int status = s.at && s.celled ? FIBRAD_OK : FIBRAD_E_MEMORY;

@@ -23,7 +23,7 @@ int fibrad_heap_scene(fibrad_scene **scene, void **block, const fibrad_scene_con
     const size_t of_spheres = fibrad_scene_size(spheres->n, spheres->id != NULL);
     const size_t of_triangles = triangles ? fibrad_triangles_size(triangles, spheres->n) : 0;
     if (!of_spheres || (triangles && !of_triangles)) return FIBRAD_E_ARGUMENT;
-    const size_t size = of_spheres + of_triangles;
+    const size_t size = of_spheres + of_triangles + (spheres->clump ? fibrad_clumps_size(spheres->n) : 0);
     *block = malloc(size);
     if (!*block) return FIBRAD_E_MEMORY;
     const int status = fibrad_scene_init(scene, *block, size, config, spheres, fault);

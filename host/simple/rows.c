@@ -118,7 +118,8 @@ int fibrad_bed_rows(fibrad_bed *bed, fibrad_row_method *row, const void *rule, c
     }
     free(order);
     free(part);
-    return status;
+    if (status || !bed->bodies) return status;
+    return fibrad_bodies_merge(bed->bodies, &bed->spheres, bed->facts.walls, bed->scratch, team);
 }
 
 /* ---- lines ------------------------------------------------------------------------------------------------------ */
@@ -194,6 +195,7 @@ static int make_matrix(fibrad_bed *bed, const fibrad_matrix_rule *rule, fibrad_m
     fibrad_team *team = &bed->team;
     fibrad_matrix_rule divided = *rule;
     divided.tasks = average_tasks(bed);
+    if (bed->bodies) divided.bodies = bed->bodies->n, divided.area = bed->bodies->area;
     divided.parallel = fibrad_team_share, divided.context = team;
     const size_t size = fibrad_matrix_size(bed->scene, team->rows, (uint32_t)team->threads, &divided);
     if (!size) return FIBRAD_E_ARGUMENT;
@@ -221,7 +223,10 @@ void fibrad_bed_matrix_free(fibrad_bed_matrix *factors) {
 int fibrad_bed_average(fibrad_bed *bed, const fibrad_matrix_rule *rule, const fibrad_rows_report *report,
                        fibrad_bed_matrix **factors) {
     const uint32_t walls = bed->facts.walls;
-    struct owned_factors *owned = calloc(1, sizeof *owned + walls * sizeof *owned->area);
+    const fibrad_bodies *bodies = bed->bodies;
+    const size_t areas = walls + (bodies ? bodies->n : 0), spheres = bodies ? bed->facts.spheres : 0;
+    struct owned_factors *owned =
+        calloc(1, sizeof *owned + areas * sizeof *owned->area + spheres * sizeof *bodies->body);
     fibrad_matrix *matrix;
     if (!owned) return FIBRAD_E_MEMORY;
     int status = make_matrix(bed, rule, &matrix, &owned->store);
@@ -233,6 +238,10 @@ int fibrad_bed_average(fibrad_bed *bed, const fibrad_matrix_rule *rule, const fi
     fibrad_bed_matrix *f = &owned->factors;
     for (uint32_t b = 0; b < walls; ++b) owned->area[b] = fibrad_scene_wall_area(bed->scene, b);
     f->wall_area = owned->area;
+    if (bodies) {
+        f->area = memcpy(owned->area + walls, bodies->area, bodies->n * sizeof *bodies->area);
+        f->body = memcpy(owned->area + areas, bodies->body, spheres * sizeof *bodies->body);
+    }
     f->facts = bed->facts;
     f->threads = bed->team.threads;
     f->directions = report->directions;

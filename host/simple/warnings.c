@@ -125,6 +125,12 @@ static void warn_of_places(const fibrad_bed *bed, fibrad_warning *list) {
         warning->second = second;
         warning->other = overlap_error(bed->spheres.r[first], bed->spheres.r[second], bed->facts.overlap_max);
     }
+    if (bed->facts.parted > 0) {
+        fibrad_warning *warning = new_warning(list, FIBRAD_WARNING_PARTED, bed->facts.parted_pair[0], 0);
+        warning->second = bed->facts.parted_pair[1], warning->count = bed->facts.parted;
+    }
+    if (bed->facts.covered > 0)
+        new_warning(list, FIBRAD_WARNING_COVERED, bed->facts.covered_sphere, 0)->count = bed->facts.covered;
     warn_of_cuts(bed, list);
     warn_of_meshes(bed, list);
 }
@@ -179,7 +185,9 @@ void fibrad_bed_warn_of_rows(fibrad_bed *bed, const fibrad_factors *matrix) {
     else if (walls && matrix->wall_correction > APART)
         new_warning(bed->warning, FIBRAD_WARNING_APART, 0, matrix->wall_correction);
     else if (matrix->changed > CHANGE_LARGE && matrix->changed * matrix->error[matrix->changed_row] > CHANGE_LEAST)
-        new_warning(bed->warning, FIBRAD_WARNING_CHANGED_ROW, matrix->changed_row, matrix->changed);
+        new_warning(bed->warning, FIBRAD_WARNING_CHANGED_ROW,
+                    bed->bodies ? bed->bodies->member[bed->bodies->start[matrix->changed_row]] : matrix->changed_row,
+                    matrix->changed);
 }
 
 uint32_t fibrad_bed_warnings(const fibrad_bed *bed, fibrad_warning *warning) {

@@ -49,6 +49,7 @@ static const char why_text[][74] = {
     [FIBRAD_WHY_TOUCHED] = "has a contact or film, but no single temperature",
     [FIBRAD_WHY_FILM] = "its film or the temperature of the gas there is out of range",
     [FIBRAD_WHY_STREAM] = "the stream has no such slice, or its inlet or capacities are out of range",
+    [FIBRAD_WHY_CLUMP] = "its clump touches its own image in the periodic box",
     [FIBRAD_WHY_ALONE] = "nothing that it touches radiates or has a temperature",
     [FIBRAD_WHY_CAPACITY] = "the heat capacity is not above 0 or is out of range",
     [FIBRAD_WHY_LIGHT] = "a number of the light is out of range, or its direction is zero",

@@ -15,8 +15,15 @@
 #define RAW_ERROR      5.0   /* the change of raw rows along lines over their error: all of 27,000 rows are below it */
 #define LEAST_ERROR    1e-12 /* least change of a row that is compared with its error; smaller changes are rounding */
 
+/* The number of rows of a matrix. */
+static uint32_t rows_of(const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
+    return rule->bodies > 0 ? rule->bodies : scene->facts.spheres;
+}
+
 static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rule *rule) {
     const bool exchange = rule->kind == FIBRAD_ROWS_EXCHANGE;
+    for (uint32_t b = 0; b < rule->bodies; b++)
+        if (rule->area == NULL || !(rule->area[b] > 0 && fibrad_finite(rule->area[b]))) return false;
     if (rule->kind < FIBRAD_ROWS_AREAS || rule->kind > FIBRAD_ROWS_EXCHANGE) return false;
     if (rule->emissivity != NULL ? !exchange : exchange && scene->facts.spheres > 0) return false;
     if (rule->tasks > TASKS_MAX || !(rule->drop >= 0 && rule->drop <= 1)) return false;
@@ -30,7 +37,7 @@ static bool matrix_rule_valid(const fibrad_scene *scene, const fibrad_matrix_rul
             valid = valid && fibrad_finite(row->wall[c]); /* values of what a deep bed hides may be slightly negative */
         if (!valid) return false;
     }
-    for (uint32_t i = 0; i < scene->facts.spheres && rule->emissivity != NULL; i++)
+    for (uint32_t i = 0; i < rows_of(scene, rule) && rule->emissivity != NULL; i++)
         if (!(rule->emissivity[i] >= 0 && rule->emissivity[i] <= 1)) return false;
     return true;
 }
@@ -46,16 +53,18 @@ static bool entries_emit(const fibrad_record *row, const double *emissivity) {
 /* The number of all entries of the collections. UINT64_MAX: their rows belong to walls other than those of the
  * scene, or they have entries that the emissivities exclude. emissivity NULL: none. *lines: out: whether all rows are
  * along lines. */
-static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count, const double *emissivity,
-                           bool *lines) {
+static uint64_t entries_of(const fibrad_scene *scene, const fibrad_rows *rows, uint32_t count,
+                           const fibrad_matrix_rule *rule, bool *lines) {
+    const double *emissivity = rule->emissivity;
+    const uint32_t n = rows_of(scene, rule);
     uint64_t entries = 0;
     *lines = true;
     for (uint32_t c = 0; c < count; c++) {
         size_t at = 0;
         for (const fibrad_record *row; (row = fibrad_rows_next(&rows[c], &at)) != NULL; entries += row->length) {
             const uint32_t *col = fibrad_record_col(row);
-            if (row->sphere >= scene->facts.spheres || row->walls != scene->facts.walls) return UINT64_MAX;
-            if (row->length > 0 && col[row->length - 1] >= scene->facts.spheres) return UINT64_MAX;
+            if (row->sphere >= n || row->walls != scene->facts.walls) return UINT64_MAX;
+            if (row->length > 0 && col[row->length - 1] >= n) return UINT64_MAX;
             if (emissivity != NULL && !entries_emit(row, emissivity)) return UINT64_MAX;
             *lines = *lines && row->lines > 0;
         }
@@ -94,15 +103,15 @@ static bool matrix_dimension(fibrad_matrix *m, const fibrad_scene *scene, const 
     const fibrad_matrix_rule rule = given != NULL ? *given : (fibrad_matrix_rule){0};
     if ((rows == NULL && count > 0) || !matrix_rule_valid(scene, &rule)) return false;
     bool lines;
-    const uint64_t entries = entries_of(scene, rows, count, rule.emissivity, &lines);
+    const uint64_t entries = entries_of(scene, rows, count, &rule, &lines);
     *m = (fibrad_matrix){.walls = scene->facts.walls, .tasks = rule.raw || rule.tasks == 0 ? 1 : rule.tasks};
     m->raw = rule.raw != 0;
     m->exchange = rule.kind == FIBRAD_ROWS_EXCHANGE;
     m->sampled = rule.kind != FIBRAD_ROWS_AREAS;
     m->lines = lines && !m->raw && !m->sampled;
-    m->enclosed = rule.wall_row != NULL;
+    m->enclosed = rule.wall_row != NULL, m->bodies = rule.bodies > 0;
     m->drop = rule.drop, m->parallel = rule.parallel, m->context = rule.context;
-    m->result.n = scene->facts.spheres;
+    m->result.n = rows_of(scene, &rule);
     m->result.capacity = m->raw ? entries : 2 * entries + (m->drop > 0 ? m->result.n : 0);
     return entries < UINT64_MAX / 4 && m->result.capacity <= SIZE_MAX;
 }
@@ -223,7 +232,8 @@ int fibrad_matrix_init(fibrad_matrix **out, void *memory, size_t size, const fib
     if (status != FIBRAD_OK) return status;
     double largest = 0;
     for (uint32_t i = 0; i < m->result.n; i++) {
-        m->r[i] = scene->r[scene->place[i]];
+        m->r[i] =
+            rule != NULL && rule->bodies > 0 ? fibrad_sqrt(rule->area[i] / (4 * FIBRAD_PI)) : scene->r[scene->place[i]];
         if (m->sampled) m->radius[i] = m->r[i];
         if (m->exchange) m->r[i] *= fibrad_sqrt(rule->emissivity[i]);
         largest = fibrad_max(largest, m->r[i]);
@@ -358,6 +368,7 @@ static double error_of_mean(const fibrad_matrix *m, uint32_t i) {
     double met = 0, own;
     const double distance = distance_to_raw(m, i, &own);
     for (uint32_t b = 0; b < m->walls; b++) met += m->wall[(size_t)i * m->walls + b];
+    if (m->bodies) own = 1; /* most of the error is of what passes inside, which no mean makes smaller */
     if (!m->exchange) return fibrad_max(VIEW_ERROR * distance, (own + (1 - own) * met) * m->error[i]);
     /* of paths: the square of the error is in proportion to what they find, and no mean changes walls and the open */
     const double ends = fibrad_min(1, met + m->escaped[i] + m->beyond[i]), raw = m->error[i] * m->error[i];

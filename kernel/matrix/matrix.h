@@ -31,6 +31,7 @@ struct fibrad_matrix {
     bool raw, exchange, open, closed;
     bool sampled;             /* exchange factors, or view factors by rays: averaged by variances */
     bool lines;               /* all rows are along lines */
+    bool bodies;              /* rows are of bodies */
     const fibrad_rows *given; /* [given_count], the collections; given_serial is the sum of their changes so far */
     uint32_t given_count;
     uint64_t given_serial;

@@ -37,8 +37,9 @@
 
 /* If at most MOST_HIDING spheres hide a part of a pair, lines between the two tell how much. They tell it better than
  * windows, of which fewer than FEW_WINDOWS should meet the sphere. The end of line k is point TURN k of LINES.
- * Measured: HIDDEN_ERROR, the error of the part over that of one random line. */
+ * Measured: HIDDEN_ERROR, the error of the part over that of one random line. With clumps other members hide, too. */
 #define MOST_HIDING  4u
+#define WITH_CLUMPS  16u
 #define LINES        128u
 #define TURN         11u
 #define FEW_WINDOWS  8.0
@@ -128,7 +129,8 @@ static bool triangles_between(const fibrad_scene *scene, const pair_hull *hull) 
     return x < hull->length || fibrad_mesh_distance(&scene->mesh, hull->to, 2 * hull->r[1]) < hull->r[1];
 }
 
-/* The part of the lines between the discs of two far spheres that some spheres between them leave. */
+/* The part of the lines between the discs of two far spheres that some spheres between them leave. Of two members of a
+ * clump the one that is nearer to the other sphere hides the other member. */
 static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32_t count, const uint32_t *between) {
     fibrad_disc_points points;
     double u[3], v[3];
@@ -140,6 +142,8 @@ static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32
         const uint32_t j = between[b];
         const double at[3] = {scene->x[j] - hull->from[0], scene->y[j] - hull->from[1], scene->z[j] - hull->from[2]};
         const double t = fibrad_dot(at, hull->axis) / hull->length, inverse = 1 / scene->r[j];
+        const double square = scene->clump != NULL ? fibrad_dot(at, at) / (hull->length * hull->length) : 0;
+        if (square >= 1 || square > 2 * t) continue;
         const float x = (float)(fibrad_dot(at, u) * inverse), y = (float)(fibrad_dot(at, v) * inverse);
         const float from = (float)((1 - t) * hull->r[0] * inverse), to = (float)(t * hull->r[1] * inverse);
         for (uint32_t k = 0; k < LINES && t > 0 && t < 1; k++) {
@@ -155,10 +159,10 @@ static double part_left(const fibrad_scene *scene, const pair_hull *hull, uint32
 
 bool fibrad_free_pair(const fibrad_scene *scene, uint32_t place, uint32_t other, uint32_t most, double *f,
                       double *error) {
-    uint32_t between[MOST_HIDING];
+    uint32_t between[WITH_CLUMPS];
     const pair_hull hull = hull_of(scene, place, other);
     *error = 0;
-    if (scene->cut[other]) return false;
+    if (scene->cut[other]) return false; /* members of one clump are pairs, too: what passes inside is then exact */
     const uint32_t count = spheres_between(scene, &hull, place, other, most, between);
     if (count > most || (scene->mesh.triangles > 0 && triangles_between(scene, &hull))) return false;
     if (fibrad_pair_exact(hull.r[0], hull.r[1], hull.length - (hull.r[0] + hull.r[1]), f) != FIBRAD_OK) return false;
@@ -223,7 +227,8 @@ static bool take_pair(pair_search *search, uint32_t other, double windows, doubl
     for (int axis = 0; axis < 3; axis++) c[axis] = (at[axis] - work->centre[axis]) * inverse;
     if (!hidden && FIBRAD_VERSION_OF(fibrad_near_between, scene->facts.isa)(&work->near, c, scene->r[other] * inverse))
         return false;
-    if (!fibrad_free_pair(scene, work->place, other, hidden ? MOST_HIDING : 0, &f, &error)) return false;
+    const uint32_t most = !hidden ? 0 : scene->clump != NULL ? WITH_CLUMPS : MOST_HIDING;
+    if (!fibrad_free_pair(scene, work->place, other, most, &f, &error)) return false;
     search->unseen += (uint64_t)(error * error / SQUARE_UNIT);
     if (f == 0) return true; /* what windows have seen remains */
     const uint32_t entry = fibrad_entries_of(entries, other);

@@ -343,9 +343,10 @@ int LANED(fibrad_beam_lanes)(const fibrad_scene *scene, fibrad_workspace *work, 
     if (status != FIBRAD_OK) return status;
     give_rest(work, &windows, &set, &sums, &pairs, scale, parts, row);
 
-    if (!lines) row->half = NULL;
-    row->directions = lines ? 0 : windows.count;
-    row->lines = lines ? windows.count : 0;
+    const bool halves = lines || scene->clump != NULL; /* errors of members cancel in the row of a clump */
+    if (!halves) row->half = NULL;
+    row->directions = halves ? 0 : windows.count;
+    row->lines = halves ? windows.count : 0;
     row->symmetric = 0;
     row->noise = masked ? noise_of(&windows, all, work->masks.regions) : 0;
     const double shares = (windows.both ? SHARES_BOTH : SHARES_ERROR) *

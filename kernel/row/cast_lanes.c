@@ -125,11 +125,12 @@ static void intersect_discs(const fibrad_workspace *work, const struct cast_ray 
 /* Traces one ray. Spheres that have not been listed are deeper than `known`. If spheres do not overlap, this means
  * that they come after all spheres that are less deep. If sphere k is deeper than sphere j but is met first, the
  * part of the ray in j lies in a cap of j inside k. The height of this cap is at most the overlap h r_j. Such a
- * chord is so inclined to the line of centres that k is deeper by at most (r_j + r_k) sqrt(2 h). False: there are
- * too many discs for the memory. */
+ * chord is so inclined to the line of centres that k is deeper by at most (r_j + r_k) sqrt(2 h). A member of a clump
+ * may be deeper by its own radius. False: there are too many discs for the memory. */
 static bool follow_cast_ray(fibrad_workspace *work, const struct cast_ray *ray, struct cast_hit *first) {
     const fibrad_scene_facts *facts = &work->scene->facts;
-    double lead = fibrad_sqrt(2 * facts->overlap_max + 1e-12), largest = facts->radius_max * work->inverse;
+    double largest = facts->radius_max * work->inverse;
+    double lead = work->scene->clump != NULL ? 1 : fibrad_sqrt(2 * facts->overlap_max + 1e-12);
     double known = -1, horizon = __builtin_inf();
     for (uint32_t shell = 0; known < horizon; shell++) {
         work->disc.count = 0;

@@ -74,6 +74,27 @@ static inline bool fibrad_is_opening(const fibrad_container *container, uint32_t
     return slot < FIBRAD_WALLS && (container->openings >> slot & 1) != 0;
 }
 
+/* A cap of a unit sphere that another sphere hides. */
+typedef struct fibrad_cap {
+    double axis[3], angle; /* unit vector to its middle; between this and its edge */
+    double share;          /* of the sphere's area; 1: all */
+} fibrad_cap;
+
+/* A sphere that belongs to the same part of a clump. */
+typedef struct fibrad_link {
+    uint32_t to;        /* itself: it stands for the part */
+    int32_t periods[3]; /* of the image of `to` that belongs to the sphere */
+} fibrad_link;
+
+/* What a scene with clumps has. All but `exposed` is used while it is made. */
+typedef struct fibrad_clumps {
+    double *exposed; /* L^2, [n], in scene order */
+    fibrad_link *link;
+    fibrad_cap *cap;     /* [n], of one sphere */
+    double (*hidden)[2]; /* [n], of one circle */
+    uint64_t *key;       /* [2 n] */
+} fibrad_clumps;
+
 struct fibrad_scene {
     fibrad_scene_facts facts;
     double period[3], low[3], high[3]; /* L, box of the centres; on a periodic axis high = low + period */
@@ -93,6 +114,8 @@ struct fibrad_scene {
     uint32_t *place;                                     /* [n], position of the caller's sphere i in scene order */
     uint32_t *start;                                     /* [cells + 1], position of the first sphere of each cell */
     uint64_t *id;                                        /* [n], by the caller's index; NULL: the index is the id */
+    uint32_t *clump;                                     /* [n], in scene order; NULL: no sphere is in a clump */
+    fibrad_clumps clumps;                                /* if there are clumps */
     fibrad_mesh mesh;
     unsigned char *cut; /* [n], 1: a wall cuts the sphere, so that a cap of it lies behind the wall */
     float *clear; /* [n], lower bound of the distance to the nearest triangle over the radius; NULL: no triangles */
@@ -123,6 +146,11 @@ static inline uint64_t fibrad_scene_id(const fibrad_scene *scene, uint32_t i) {
  * matter. */
 static inline uint64_t fibrad_scene_rank(const fibrad_scene *scene, uint32_t place) {
     return fibrad_scene_id(scene, scene->order[place]);
+}
+
+/* Whether spheres at two places in scene order are members of one clump. */
+static inline bool fibrad_one_clump(const fibrad_scene *scene, uint32_t a, uint32_t b) {
+    return scene->clump != NULL && scene->clump[a] != 0 && scene->clump[a] == scene->clump[b];
 }
 
 /* Whether sphere a at `at` comes before sphere b at `other` if both are equally far: the lower id comes first. Of two

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "base/arena.h"
 #include "base/dispatch.h"
+#include "scene/clumps.h"
 #include "scene/grid_walk.h"
 #include "scene/surroundings.h"
 #include "scene/walls.h"
@@ -12,7 +13,7 @@
 /* The number of cells of a level is at most the number of its spheres and this number. */
 #define SPARE_CELLS 8u
 
-static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uint32_t triangles) {
+static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uint32_t triangles, bool clumps) {
     fibrad_scene *scene = fibrad_arena_take(arena, 1, sizeof *scene);
     double *x = fibrad_arena_take(arena, n, sizeof *x), *y = fibrad_arena_take(arena, n, sizeof *y);
     double *z = fibrad_arena_take(arena, n, sizeof *z), *r = fibrad_arena_take(arena, n, sizeof *r);
@@ -24,11 +25,14 @@ static fibrad_scene *scene_layout(fibrad_arena *arena, uint32_t n, bool ids, uin
     fibrad_mesh mesh = {0};
     if (triangles > 0) fibrad_mesh_layout(arena, &mesh, triangles);
     float *clear = triangles > 0 ? fibrad_arena_take(arena, n, sizeof *clear) : NULL;
+    uint32_t *clump = clumps ? fibrad_arena_take(arena, n, sizeof *clump) : NULL;
+    fibrad_clumps of_clumps = {0};
+    if (clumps) fibrad_clumps_layout(arena, n, &of_clumps);
     if (arena->base != NULL) {
         fibrad_zero(scene, sizeof *scene);
         scene->x = x, scene->y = y, scene->z = z, scene->r = r, scene->coarse = coarse;
         scene->order = order, scene->place = place, scene->start = start, scene->id = id;
-        scene->cut = cut, scene->mesh = mesh, scene->clear = clear;
+        scene->cut = cut, scene->mesh = mesh, scene->clear = clear, scene->clump = clump, scene->clumps = of_clumps;
     }
     return scene;
 }
@@ -47,8 +51,16 @@ static int check_config(const fibrad_scene_config *config) {
 size_t fibrad_scene_size(uint32_t n, int ids) {
     if (n > FIBRAD_SPHERES_MAX) return 0;
     fibrad_arena arena = {0};
-    scene_layout(&arena, n, ids != 0, 0);
+    scene_layout(&arena, n, ids != 0, 0, false);
     return fibrad_arena_total(&arena);
+}
+
+size_t fibrad_clumps_size(uint32_t n) {
+    const size_t without = fibrad_scene_size(n, 0);
+    fibrad_arena arena = {0};
+    if (without == 0) return 0;
+    scene_layout(&arena, n, false, 0, true);
+    return fibrad_arena_total(&arena) - without;
 }
 
 static int scene_fault(int status, fibrad_fault *fault, uint32_t first, uint32_t second) {
@@ -133,6 +145,7 @@ static uint64_t hash_of(const fibrad_scene *scene, const fibrad_spheres *s) {
         for (int axis = 0; axis < 3; axis++) hash = fibrad_hash_number(hash, coordinate_of(s, axis, i));
         hash = fibrad_hash_number(hash, radius_of(s, i));
         if (s->id != NULL) hash = fibrad_hash_word(hash, s->id[i]);
+        if (scene->clump != NULL) hash = fibrad_hash_word(hash, s->clump[i]);
     }
     for (uint32_t t = 0; t < scene->mesh.triangles; t++) {
         for (int k = 0; k < 9; k++) hash = fibrad_hash_number(hash, scene->mesh.corner[k / 3][k % 3][t]);
@@ -351,10 +364,16 @@ static int each_overlap(fibrad_scene *scene, overlap_met *met, void *context) {
     return FIBRAD_OK;
 }
 
-/* Finds the largest overlap, and refuses a centre inside another sphere. */
+/* Finds the largest overlap, and refuses a centre inside another sphere. Members of a clump may lie within one another.
+ * Those in one place are moved apart, since of two spheres the one before the other is seen. */
 static int check_overlap(fibrad_scene *scene, uint32_t i, uint32_t j, double distance, void *fault) {
     const uint32_t a = scene->order[i], b = scene->order[j];
     const double sum = scene->r[i] + scene->r[j], smaller = fibrad_min(scene->r[i], scene->r[j]);
+    if (i != j && fibrad_one_clump(scene, i, j)) {
+        const uint32_t k = fibrad_scene_rank(scene, i) > fibrad_scene_rank(scene, j) ? i : j;
+        if (distance == 0) scene->x[k] += fibrad_max(1e-12 * scene->r[k], 4e-16 * fibrad_abs(scene->x[k]));
+        return FIBRAD_OK;
+    }
     if (distance < sum - smaller || distance == 0)
         return scene_fault(FIBRAD_E_GEOMETRY, fault, a < b ? a : b, a < b ? b : a);
     const double overlap = (sum - distance) / smaller;
@@ -446,14 +465,14 @@ static int lay_out_scene(fibrad_scene **out, void *memory, size_t size, const fi
     if (status == FIBRAD_OK) {
         size_t needed = fibrad_scene_size(n, given->id != NULL);
         if (needed > 0 && triangles > 0) needed += fibrad_triangles_size(triangles, n);
+        if (given->clump != NULL) needed += fibrad_clumps_size(n);
         status = fibrad_arena_open(&arena, memory, size, needed);
     }
     if (status != FIBRAD_OK) return wall_fault(status, fault, n, config);
 
     const fibrad_spheres s = with_strides(given);
-    fibrad_scene *scene = *out =
-        scene_layout(&arena, n, s.id != NULL, triangles); /* the hash is 0 until the scene is complete, so objects of
-                                                             the last scene in this block return FIBRAD_E_STATE */
+    /* the hash is 0 until the scene is complete, so objects of the last scene in this block return FIBRAD_E_STATE */
+    fibrad_scene *scene = *out = scene_layout(&arena, n, s.id != NULL, triangles, s.clump != NULL);
     scene->facts.spheres = n;
     scene->facts.walls = config->walls;
     scene->facts.isa = fibrad_isa_choose(config->isa);
@@ -471,6 +490,7 @@ static int lay_out_scene(fibrad_scene **out, void *memory, size_t size, const fi
         scene->cut[k] = scene->container.cuts && fibrad_walls_cut(&scene->container, centre, scene->r[k]);
     }
     if (s.id != NULL && n > 0) fibrad_copy(scene->id, s.id, n * sizeof *s.id);
+    for (uint32_t k = 0; k < n && s.clump != NULL; k++) scene->clump[k] = s.clump[scene->order[k]];
     return FIBRAD_OK;
 }
 
@@ -486,6 +506,14 @@ int fibrad_scene_init(fibrad_scene **out, void *memory, size_t size, const fibra
         write_coarse(scene);
         status = each_overlap(scene, check_overlap, fault);
         if (status != FIBRAD_OK) return status;
+    }
+    if (scene->clump != NULL) {
+        uint32_t sphere = 0;
+        status = fibrad_clumps_build(scene, &sphere);
+        if (status != FIBRAD_OK) {
+            (void)sphere_fault(fault, sphere, FIBRAD_WHY_CLUMP);
+            return status;
+        }
     }
     if (scene->facts.triangles > 0) {
         status = build_mesh(scene, &config, fault);

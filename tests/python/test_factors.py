@@ -385,3 +385,24 @@ def test_more_than_the_library_can_do_is_said():
         fibrad.view_factors([[0, 0, 0], [0, 0, 1.9]], 1)
     with pytest.warns(UserWarning, match="above the tolerance of 1e-09"):
         fibrad.view_factors([[0, 0, 0], [0, 0, 3], [1.2, 0, 6]], 1, tolerance=1e-9)  # a pair with something in between
+
+
+def test_clumps_are_bodies():
+    """A dumbbell, alone and beside a sphere, against closed forms."""
+    x, r, clump = [[0, 0, 0], [1, 0, 0], [0.5, 2.2, 0]], 1.0, [4, 4, 0]
+    factors = fibrad.view_factors(x, r, clump=clump)
+    assert factors.n == 2 and factors.body.tolist() == [0, 0, 1] and factors.ids is None
+    assert factors.area == pytest.approx([6 * np.pi, 4 * np.pi], rel=1e-12)
+    assert factors.matrix[0, 0] == pytest.approx(0.0107708, abs=1e-6) and sums(factors) == pytest.approx(1, abs=1e-13)
+    assert factors.area[0] * factors.matrix[0, 1] == pytest.approx(factors.area[1] * factors.matrix[1, 0], rel=1e-14)
+    with pytest.warns(UserWarning, match="do not touch"):
+        fibrad.view_factors(x, 0.4, clump=[1, 1, 0])
+    with pytest.raises(fibrad.InputError, match="centre of one lies inside"):
+        fibrad.view_factors(x, [1, 1.5, 1])
+    with pytest.raises(fibrad.InputError, match="exchange factors of clumps"):
+        fibrad.exchange_factors(x, r, 0.5, clump=clump)
+    with pytest.raises(fibrad.InputError, match="touches its own image"):
+        fibrad.view_factors(x, r, clump=clump, box=[2.9, 0, 0])
+    for wrong in ([1, 2], [0.5, 1, 1], [-1, 1, 1]):
+        with pytest.raises(fibrad.InputError, match="clump"):
+            fibrad.view_factors(x, r, clump=wrong)

@@ -5,7 +5,7 @@ import ctypes
 import math
 import threading
 import weakref
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any, NoReturn, Optional, Union
 
 import numpy as np
@@ -59,6 +59,9 @@ class Bed:
         replaces an earlier one of the same name. Default: no walls.
     ids : (n,) array of whole numbers, optional
         Names of the spheres, from 0. Messages use them. They seed random paths and decide ties.
+    clump : (n,) array of whole numbers, optional
+        Numbers of clumps, from 1. Spheres of one number are one body and may lie within one another. 0: the sphere is
+        alone. Default: there are no clumps.
     threads : int, optional
         1 to 1024. Changes no bit. Default: ``OMP_NUM_THREADS``, or else all processors.
     progress : callable, optional
@@ -86,8 +89,9 @@ class Bed:
     """
 
     def __init__(self, x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
-                 ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None):
-        self._packing = Packing(x, r, ids)
+                 ids: Optional[ArrayLike] = None, clump: Optional[ArrayLike] = None, threads: Optional[int] = None,
+                 progress: Optional[Progress] = None):
+        self._packing = Packing(x, r, ids, clump)
         self._container = Container(box, walls, self._packing)
         self._call = Call(threads, progress)
         self._busy = threading.Lock()
@@ -100,7 +104,7 @@ class Bed:
             raise self._container.error(self._packing, status, self._call.run.fault)
         self._warn(PLACES)
 
-    def _warn(self, codes: range) -> None:
+    def _warn(self, codes: Collection[int]) -> None:
         warn_found(self._handle, self._packing, self._container, codes)
 
     def _use(self, function: Any, *arguments: Any, packing: Optional[Packing] = None,
@@ -151,7 +155,7 @@ class Bed:
         """
         if np.shape(x)[:1] != (self.n,):
             raise refuse(f"x has the shape {np.shape(x)}; this Bed has {self.n} spheres")
-        packing = Packing(x, self._packing.r if r is None else r, self._packing.ids)
+        packing = Packing(x, self._packing.r if r is None else r, self._packing.ids, self._packing.clump)
         container = Container(self._container.period if box is None else box,
                               self._container.all if walls is None else walls, packing)
         kinds = [[*one.names, *(f"{name} open" for name in sorted(one.opened))] for one in (container, self._container)]
@@ -180,7 +184,8 @@ class Bed:
                 rays: Optional[int] = None, paths: Optional[int] = None, seed: Optional[int] = None,
                 cutoff: Optional[float] = None, wanted: Optional[ArrayLike] = None, raw: bool = False, drop: float = 0.0,
                 scratch: Optional[Folder] = None) -> Factors:
-        """View factors between all spheres, or exchange factors if emissivities are given.
+        """View factors between all spheres, or exchange factors if emissivities are given. View factors of clumps have
+        one row and one column for each body (`Factors.body`). Exchange factors of clumps are not computed.
 
         An exchange factor D_ij is the fraction of the emission of sphere i that sphere j absorbs, directly or after
         diffuse reflections. The net power of sphere i is ``sum_j A_i e_i D_ij sigma (T_j**4 - T_i**4)``, where j counts
@@ -502,10 +507,10 @@ class Bed:
 
 
 def view_factors(x: ArrayLike, r: ArrayLike, *, box: Optional[ArrayLike] = None, walls: Optional[Walls] = None,
-                 ids: Optional[ArrayLike] = None, threads: Optional[int] = None, progress: Optional[Progress] = None,
-                 **options: Any) -> Factors:
+                 ids: Optional[ArrayLike] = None, clump: Optional[ArrayLike] = None, threads: Optional[int] = None,
+                 progress: Optional[Progress] = None, **options: Any) -> Factors:
     """View factors of a bed in one call. Arguments are those of `Bed` and of `Bed.factors`."""
-    with Bed(x, r, box=box, walls=walls, ids=ids, threads=threads, progress=progress) as bed:
+    with Bed(x, r, box=box, walls=walls, ids=ids, clump=clump, threads=threads, progress=progress) as bed:
         return bed.factors(**options)
 
 

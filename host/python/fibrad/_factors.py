@@ -93,7 +93,12 @@ class Factors:
         sums contradict each other. Then rows of walls are not closed, this is ``wall_correction``, and there is
         a warning.
     ids
-        (n,) ids of the spheres as given. None: none were given.
+        (n,) ids of the spheres as given. None: none were given, or there are clumps.
+    body
+        With clumps: (spheres,) the row of each sphere. Rows and columns are bodies then, n of them, in the order of
+        their first spheres. None: there are no clumps.
+    area
+        [L^2] With clumps: (n,) exposed areas of the bodies. None: there are no clumps.
     closure_error
         Largest ``|sum - 1|`` of a raw row.
     reciprocity_error
@@ -129,6 +134,8 @@ class Factors:
     wall_correction: Optional[float]
     wall_closure: Optional[float]
     ids: Optional[NDArray[np.uint64]]
+    body: Optional[NDArray[np.int32]]
+    area: Optional[NDArray[np.float64]]
     closure_error: float
     reciprocity_error: float
     node_emissivity: Optional[NDArray[np.float64]]
@@ -141,7 +148,7 @@ class Factors:
 
     @property
     def n(self) -> int:
-        """Number of spheres."""
+        """Number of rows: of spheres or, with clumps, of bodies."""
         return len(self.escaped)
 
     @property
@@ -171,8 +178,8 @@ class Factors:
 
     def save(self, path: Folder) -> None:
         """Writes a .npz file, as the program does. ``scipy.sparse.load_npz`` reads the matrix from the file. The file
-        also has `escaped`, `beyond` and `error`, and, if there are any, `ids`, `node_emissivity` and the factors of
-        walls."""
+        also has `escaped`, `beyond` and `error`, and, if there are any, `ids`, `area`, `node_emissivity` and the factors
+        of walls."""
         if not os.fspath(path).endswith(".npz"):
             raise refuse(f"{os.fspath(path)!r} does not end in .npz")
         arrays: dict[str, Any] = {
@@ -180,6 +187,8 @@ class Factors:
             "data": self.data, "escaped": self.escaped, "beyond": self.beyond, "error": self.error}
         if self.ids is not None:
             arrays["ids"] = self.ids
+        if self.area is not None:
+            arrays["area"] = self.area
         if self.node_emissivity is not None:
             arrays["node_emissivity"] = self.node_emissivity
         if self.wall_names:
@@ -209,7 +218,9 @@ def take_factors(owner: Owner, wall_names: tuple[str, ...], ids: Optional[NDArra
         wall_area=_array(owner, found.wall_area, (walls,)),
         wall_wall=_array(owner, matrix.wall_wall, (walls, walls)) if matrix.wall_wall else None,
         wall_escaped=_array(owner, matrix.wall_escaped, (walls,)) if matrix.wall_escaped else None,
-        wall_error=_array(owner, matrix.wall_error, (walls,)) if matrix.wall_error else None, ids=ids,
+        wall_error=_array(owner, matrix.wall_error, (walls,)) if matrix.wall_error else None,
+        ids=None if found.body else ids, body=_array(owner, found.body, (found.facts.spheres,), "i4") if found.body else None,
+        area=_array(owner, found.area, (n,)) if found.area else None,
         wall_correction=matrix.wall_correction if matrix.wall_wall else None,
         wall_closure=matrix.wall_closure if matrix.wall_wall else None, closure_error=found.closure_error,
         reciprocity_error=found.reciprocity_error, node_emissivity=nodes, directions=found.directions, fallbacks=found.fallbacks,
@@ -239,6 +250,8 @@ class Rule:
         if foreign or emissivity is not None and method != "beam":
             raise refuse(f"{', '.join(foreign or ['method'])}: not of "
                          f"{'exchange factors' if kind == 'exchange' else f'the method {method!r}'}")
+        if emissivity is not None and packing.clump is not None and packing.clump.any():
+            raise refuse("exchange factors of clumps are not computed: emissivity must be left out")
         if emissivity is None and k_star is not None:
             raise refuse("k_star is given, and emissivity is missing")
         self.nodes: Optional[NDArray[np.float64]] = None

@@ -36,7 +36,8 @@ def _strided(array: NDArray[np.float64]) -> NDArray[np.float64]:
 class Packing:
     """Spheres, and their arrays, which this object keeps."""
 
-    def __init__(self, x: ArrayLike, r: ArrayLike, ids: Optional[ArrayLike] = None):
+    def __init__(self, x: ArrayLike, r: ArrayLike, ids: Optional[ArrayLike] = None,
+                 clump: Optional[ArrayLike] = None):
         self.x = _strided(doubles("x", x))
         if self.x.ndim != 2 or self.x.shape[1] != 3:
             raise refuse(f"x has the shape {self.x.shape}; (n, 3) is wanted: the centres of n spheres")
@@ -46,10 +47,11 @@ class Packing:
             raise refuse(f"r has the shape {r.shape}; a radius or {self.n} of them, one for each sphere, are wanted")
         self.r = _strided(np.broadcast_to(r, (self.n,)))
         self.ids = None if ids is None else self._take_ids(ids)
+        self.clump = None if clump is None else self._take_clump(clump)
         self.names = Names(self.ids)
         columns = [pointer(self.x[:, k]) for k in range(3)] if self.n else [None] * 3
         self.spheres = Spheres(*columns, pointer(self.r), self.n, _stride(self.x), _stride(self.r),
-                               pointer(self.ids, ctypes.POINTER(ctypes.c_uint64)))
+                               pointer(self.ids, ctypes.POINTER(ctypes.c_uint64)), pointer(self.clump, WHOLE))
 
     def _take_ids(self, ids: ArrayLike) -> NDArray[np.uint64]:
         array = np.asarray(ids)
@@ -61,6 +63,14 @@ class Packing:
         if values.size < self.n:
             raise refuse(f"two spheres have the id {values[counts > 1][0]}")
         return np.require(array, np.uint64, ["C", "A"])
+
+    def _take_clump(self, clump: ArrayLike) -> NDArray[np.uint32]:
+        array = np.asarray(clump)
+        if array.shape != (self.n,):
+            raise refuse(f"clump has the shape {array.shape}; {self.n} are wanted, one for each sphere")
+        if array.size and (array.min() < 0 or array.max() >= 2**32 or (array != np.floor(array)).any()):
+            raise refuse("clump must be whole numbers from 0, below 2**32; 0 stands for a sphere that is alone")
+        return np.require(array, np.uint32, ["C", "A"])
 
 
 def period_of(box: Optional[ArrayLike]) -> NDArray[np.float64]:

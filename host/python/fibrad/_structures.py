@@ -59,7 +59,8 @@ class SceneConfig(Structure):
 
 class Spheres(Structure):
     _fields_ = [("x", POINTER(c_double)), ("y", POINTER(c_double)), ("z", POINTER(c_double)), ("r", POINTER(c_double)),
-                ("n", c_uint32), ("stride", c_uint32), ("stride_r", c_uint32), ("id", POINTER(c_uint64))]
+                ("n", c_uint32), ("stride", c_uint32), ("stride_r", c_uint32), ("id", POINTER(c_uint64)),
+                ("clump", POINTER(c_uint32))]
 
 
 class Fault(Structure):
@@ -73,7 +74,8 @@ class Run(Structure):
 class SceneFacts(Structure):
     _fields_ = [("spheres", c_uint32), ("walls", c_uint32), ("isa", c_int), ("cells", c_uint32),
                 ("radius_min", c_double), ("radius_max", c_double), ("overlap_max", c_double),
-                ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32)]
+                ("overlap_pair", c_uint32 * 2), ("triangles", c_uint32), ("clumps", c_uint32), ("covered", c_uint32),
+                ("covered_sphere", c_uint32), ("parted", c_uint32), ("parted_pair", c_uint32 * 2)]
 
 
 class Warning(Structure):
@@ -112,9 +114,9 @@ class Factors(Structure):
 
 
 class BedMatrix(Structure):
-    _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("wall_area", POINTER(c_double)), ("threads", c_int),
-                ("directions", c_uint32), ("fallbacks", c_uint64), ("rays", c_uint64), ("seconds", c_double),
-                ("closure_error", c_double), ("reciprocity_error", c_double)]
+    _fields_ = [("matrix", Factors), ("facts", SceneFacts), ("body", POINTER(c_uint32)), ("area", POINTER(c_double)),
+                ("wall_area", POINTER(c_double)), ("threads", c_int), ("directions", c_uint32), ("fallbacks", c_uint64),
+                ("rays", c_uint64), ("seconds", c_double), ("closure_error", c_double), ("reciprocity_error", c_double)]
 
 
 class WallRule(Structure):

@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Collection
 from typing import Any
 
 from ._library import library
@@ -12,7 +13,7 @@ from ._structures import Warning as Found
 from ._walls import Container
 
 _RADIUS_LARGE = 0.1  # [m] particles hardly have a larger mean radius
-PLACES, SOURCES, ROWS = range(1, 5), range(5, 10), range(10, 13)  # of fibrad_warning_code
+PLACES, SOURCES, ROWS = (1, 2, 3, 4, 13, 14), range(5, 10), range(10, 13)  # of fibrad_warning_code
 _TEXTS = {
     1: "{first} and {second} overlap by {value:.3g} of a radius, so their view factors err by about {other:.1g}",
     2: "{first} reaches through the wall {wall} by {value:.2g} of its radius ({count} such cases in all); is the wall in "
@@ -32,7 +33,10 @@ _TEXTS = {
         "spheres{asked}",
     11: "rows of walls and of spheres disagreed by {value:.2g} before they were closed{asked}; more directions help",
     12: "rows were scaled to add up to 1; this changes what {first} gives to walls and surroundings by {value:.2g} times "
-        "the error of its row{asked}; more directions help"}
+        "the error of its row{asked}; more directions help",
+    13: "{first} and {second} are of one clump, and its parts do not touch ({count} such clumps in all); it is one body "
+        "all the same",
+    14: "{first} lies within other spheres of its clump ({count} such spheres in all), so it has no surface"}
 
 _HERE = os.path.dirname(os.path.abspath(__file__)) + os.sep
 
@@ -45,7 +49,7 @@ def warn(text: str) -> None:
     warnings.warn(text, stacklevel=level)
 
 
-def warn_found(bed: Any, packing: Packing, container: Container, codes: range) -> None:
+def warn_found(bed: Any, packing: Packing, container: Container, codes: Collection[int]) -> None:
     """What the library says of a bed, of these codes."""
     found = (Found * len(_TEXTS))()
     for one in found[:library.fibrad_bed_warnings(bed, found)]:
