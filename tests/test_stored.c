@@ -248,6 +248,15 @@ LOOP_TEST(wall_stores, 3) {
     }
 }
 
+/* A sphere that was free stays at its temperature from when it is held. The temperatures stay as they are. */
+static void assert_held_later(fibrad_bed *made, const fibrad_heat_sources *s, const double *temperature) {
+    const double capacity[] = {10, INFINITY, 10};
+    double t[] = {temperature[0], temperature[1], temperature[2]};
+    fibrad_span span = {t, capacity, .duration = 3};
+    assert_ok(fibrad_bed_advance(made, s, &span));
+    ck_assert(t[0] != temperature[0] && t[1] == temperature[1]);
+}
+
 /* A sphere beside one of infinite capacity is as warm as beside one of a very large one, by factors and by patches. */
 TEST(held_beside_free) {
     OWNED_BED bed = BED({0, 0, 0, .01}, {.021, 0, 0, .01}, {0, .021, 0, .01});
@@ -267,6 +276,7 @@ TEST(held_beside_free) {
             fibrad_span span = {t, capacity, 30, .tolerance = 1e-6};
             assert_ok(fibrad_bed_advance(made, &s, &span));
             if (k == 0) ck_assert(t[0] == 1200);
+            if (k == 1) assert_held_later(made, &s, t);
             if (k == 0) ck_assert_double_lt(span.held_energy, -100);
         }
         for (int i = 1; i < 3; ++i) assert_near(found[0][i], found[1][i], 1e-8);
