@@ -290,7 +290,7 @@ static int try_step(struct stepper *m, double time, double step, double *error) 
     const double length = GAMMA * step;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         t->base[i] = t->now[i];
-        t->heat[i] = near_to(t->now[i] + length * t->slope[i], t->now[i]);
+        t->heat[i] = is_held(m, i) ? t->now[i] : near_to(t->now[i] + length * t->slope[i], t->now[i]);
         t->guess[i] = stored_at(m, i, t->heat[i]).temperature;
     }
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b) t->wall_base[b] = t->wall_found[b] = t->wall_now[b];
