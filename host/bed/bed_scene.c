@@ -73,7 +73,7 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
         if (fabs(value[axis]) > fabs(value[worst])) worst = axis;
     if (fault->why == FIBRAD_WHY_CLUMP_HEAT)
         return message_at(STATUS_INPUT, file, bed->line[first],
-                          "sphere %lld: the members of clump %u have different temperatures, or only some have one",
+                          "sphere %lld: the members of clump %u have different temperatures or stores, or only some have one",
                           (long long)bed_name(bed, first), bed->clump[first]);
     if (place || fault->why == FIBRAD_WHY_RADIUS)
         return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %c is %g: %s",
