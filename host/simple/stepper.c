@@ -104,6 +104,10 @@ static const uint32_t *members_of(const struct stepper *m, const uint32_t *b, ui
     return bodies ? bodies->member + bodies->start[*b] : b;
 }
 
+static uint32_t bodies_of(const struct stepper *m) {
+    return m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
+}
+
 /* Whether a sphere exchanges no heat with any other. */
 static bool stands_alone(const struct stepper *m, uint32_t i) {
     const fibrad_bodies *bodies = m->bed->bodies;
@@ -161,8 +165,9 @@ static bool accept_solution(struct stepper *m, double length, bool halved) {
     fibrad_stepping *t = m->t;
     bool agree = true;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double at = t->guess[i], last = t->heat[i], capacity = m->span->capacity[i], ratio = t->found[i] / at;
-        const double warmed = t->base[i] + length * power_of(m, i) / capacity;
+        const double at = t->guess[i], last = t->heat[i], ratio = t->found[i] / at;
+        const body_sum body = sum_of_body(m, i);
+        const double warmed = t->base[i] + length * body.given / body.capacity;
         const fibrad_stored from = stored_at(m, i, last);
         const bool alone = stands_alone(m, i), melts = from.capacity == INFINITY;
         t->solution[i] = is_held(m, i)    ? last
@@ -444,6 +449,7 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < n; ++i) {
         const double capacity = span->capacity[i];
+        const uint32_t first = first_member(bed, i);
         const int why = !(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)
                             ? FIBRAD_WHY_TEMPERATURE
                         : !(capacity > 0 && (capacity <= FIBRAD_CAPACITY_MAX || capacity == INFINITY)) ||
