@@ -148,15 +148,19 @@ static void linearise(struct stepper *m, double length) {
     }
 }
 
-/* The heat that sphere i has gained, over its capacity. In a clump all is gained together. */
-static double gained(const struct stepper *m, uint32_t i, double length) {
-    const fibrad_bodies *bodies = m->bed->bodies;
-    double power = 0, capacity = 0;
-    uint32_t count;
-    const uint32_t b = bodies ? bodies->body[i] : i, *member = members_of(m, &b, &count);
+/* Capacity, given power and net power of the body of a sphere. */
+typedef struct body_sum {
+    double capacity, given, gained;
+} body_sum;
+
+static body_sum sum_of_body(const struct stepper *m, uint32_t i) {
+    body_sum sum = {0, 0, 0};
+    uint32_t count, b = m->bed->bodies ? m->bed->bodies->body[i] : i;
+    const uint32_t *member = members_of(m, &b, &count);
     for (uint32_t k = 0; k < count; ++k)
-        power += power_of(m, member[k]) + m->t->power[member[k]], capacity += m->span->capacity[member[k]];
-    return length * power / capacity;
+        sum.capacity += m->span->capacity[member[k]], sum.given += power_of(m, member[k]),
+            sum.gained += m->t->power[member[k]];
+    return sum;
 }
 
 /* Takes the solution of the linear problem. t->solution gets the heats that keep the energy, t->heat and t->guess those
@@ -170,11 +174,10 @@ static bool accept_solution(struct stepper *m, double length, bool halved) {
         const double warmed = t->base[i] + length * body.given / body.capacity;
         const fibrad_stored from = stored_at(m, i, last);
         const bool alone = stands_alone(m, i), melts = from.capacity == INFINITY;
-        t->solution[i] = is_held(m, i)    ? last
-                         : alone          ? warmed
-                         : !melts         ? last + from.capacity * (0.25 * at * (ratio * ratio * ratio * ratio - 1))
-                         : m->bed->bodies ? t->base[i] + gained(m, i, length)
-                                          : warmed + length * t->power[i] / capacity;
+        t->solution[i] = is_held(m, i) ? last
+                         : alone       ? warmed
+                         : melts       ? warmed + length * body.gained / body.capacity
+                                       : last + from.capacity * (0.25 * at * (ratio * ratio * ratio * ratio - 1));
         const fibrad_stored to = stored_at(m, i, t->solution[i]);
         const double found = alone ? to.temperature : t->found[i], near = found > at / 2 ? found : at / 2;
         agree = agree && near == found && fabs(found - to.temperature) <= SOLVED * m->tolerance * found;
@@ -206,23 +209,22 @@ static void accept_walls(struct stepper *m, double length) {
 static void balance_energy(struct stepper *m, double length) {
     fibrad_stepping *t = m->t;
     double left = -m->result.surroundings_power - m->result.gas_power, capacity = 0, of_walls = 0;
-    const uint32_t bodies = m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b) {
         left -= m->result.wall_power[b];
         if (wall_stores(m, b)) of_walls += m->span->wall_capacity[b];
     }
-    for (uint32_t b = 0; b < bodies; ++b) {
-        double missing = 0, stiffness = 0;
+    for (uint32_t b = 0; b < bodies_of(m); ++b) {
+        double missing = 0, stiff = 0;
         uint32_t count;
         const uint32_t *member = members_of(m, &b, &count);
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t i = member[k];
             const fibrad_stored to = stored_at(m, i, t->solution[i]);
             const double rate = m->span->capacity[i] / length, at = to.temperature;
-            const double stiff =
-                4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
             missing += power_of(m, i) + t->power[i] - rate * (t->solution[i] - t->base[i]);
-            stiffness += rate + stiff / to.capacity;
+            stiff +=
+                rate + (4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i]) /
+                           to.capacity;
         }
         for (uint32_t k = 0; k < count; ++k) {
             const uint32_t i = member[k];
@@ -230,7 +232,7 @@ static void balance_energy(struct stepper *m, double length) {
                 left -= t->power[i];
                 continue;
             }
-            t->solution[i] += missing / stiffness;
+            t->solution[i] += missing / stiff;
             left += power_of(m, i) - m->span->capacity[i] / length * (t->solution[i] - t->base[i]);
             capacity += m->span->capacity[i];
         }
@@ -411,21 +413,6 @@ static int take_steps(struct stepper *m) {
     return FIBRAD_OK;
 }
 
-/* The first member of the clump of a sphere. */
-static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
-    return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
-}
-
-/* Whether a sphere stores heat as the first member of its clump, and begins as it. */
-static bool is_like_first(const fibrad_bed *bed, const fibrad_span *span, uint32_t i) {
-    const uint32_t first = first_member(bed, i);
-    return span->temperature[i] == span->temperature[first] &&
-           (span->capacity[i] == INFINITY) == (span->capacity[first] == INFINITY) &&
-           (!span->store_of || span->store_of[i] == span->store_of[first]) &&
-           (!span->melted || span->melted[i] == span->melted[first] ||
-            (isnan(span->melted[i]) && isnan(span->melted[first])));
-}
-
 /* Checks stores, and walls with a capacity. */
 static int check_stores(fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
     if (!span->store != (span->stores == 0)) return FIBRAD_E_ARGUMENT;
@@ -436,6 +423,21 @@ static int check_stores(fibrad_bed *bed, const fibrad_heat_sources *s, const fib
             (span->wall_capacity[b] > 0 && (!(s->wall_temperature[b] > 0) || (s->insulated && s->insulated[b]))))
             return FIBRAD_E_ARGUMENT;
     return find_beyond(bed, span, span->temperature) ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
+}
+
+/* The first member of the clump of a sphere. */
+static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
+    return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
+}
+
+/* Whether a sphere stores heat as the first member of its clump does, and begins as it. */
+static bool is_like_first(const fibrad_bed *bed, const fibrad_span *span, uint32_t i) {
+    const uint32_t first = first_member(bed, i);
+    const double melted[] = {span->melted ? span->melted[i] : 0, span->melted ? span->melted[first] : 0};
+    return span->temperature[i] == span->temperature[first] &&
+           (span->capacity[i] == INFINITY) == (span->capacity[first] == INFINITY) &&
+           (!span->store_of || span->store_of[i] == span->store_of[first]) &&
+           (melted[0] == melted[1] || (isnan(melted[0]) && isnan(melted[1])));
 }
 
 /* Checks a span. bed->fault: the first sphere with an invalid value. */
@@ -449,7 +451,6 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < n; ++i) {
         const double capacity = span->capacity[i];
-        const uint32_t first = first_member(bed, i);
         const int why = !(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)
                             ? FIBRAD_WHY_TEMPERATURE
                         : !(capacity > 0 && (capacity <= FIBRAD_CAPACITY_MAX || capacity == INFINITY)) ||
