@@ -532,7 +532,7 @@ install-lib: lib lib-host
 ## wheel: build/wheel/fibrad-*.whl, the Python package for any Python from 3.9
 wheel: lib-host lib-files
 	rm -rf $(BUILD)/wheel && mkdir -p $(BUILD)/wheel
-	BUILD=$(abspath $(BUILD)) CC="$(CC)" /usr/bin/python3 -c "import sys; sys.path.insert(0, 'host/python/build_backend'); \
+	BUILD=$(abspath $(BUILD)) CC="$(CC)" /usr/bin/python3 -B -c "import sys; sys.path.insert(0, 'host/python/build_backend'); \
 	    import fibrad_build; print('$(BUILD)/wheel/' + fibrad_build.build_wheel('$(BUILD)/wheel'))"
 
 ## deb: build/deb/*.deb, packages of the program, the libraries and Python for Debian

@@ -74,7 +74,7 @@
  *   pair       two spheres with nothing in between      fibrad_pair_exact
  *   scene      spheres, walls, divided beds             fibrad_scene_size, _init, _describe, _wall_area, _sphere
  *              centres inside other spheres             fibrad_spheres_inside
- *              clumps: what is exposed of a member      fibrad_clumps_size, fibrad_scene_exposed_area
+ *              clumps: what is exposed of a member      fibrad_clumps_size, _scene_exposed_area, _scene_volume
  *   work       scratch memory of one thread             fibrad_work, FIBRAD_WORK_BYTES
  *   row        one row, by beams or by rays             fibrad_beam_row, fibrad_cast_row, fibrad_directions_for
  *              lines for the rows of a matrix           fibrad_line_set_lines, _size, _init
@@ -317,7 +317,10 @@ typedef enum fibrad_why {
     FIBRAD_WHY_ALONE = 26,        /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
     FIBRAD_WHY_FILM = 27,         /* A film is negative or out of range, or the temperature of its gas is. */
     FIBRAD_WHY_STREAM = 28,       /* A stream has no such slice, or its inlet or capacities are out of range. */
-    FIBRAD_WHY_CLUMP = 29         /* A clump touches its own image in the next period. */
+    FIBRAD_WHY_CLUMP = 29,        /* A clump touches its own image in the next period. */
+    FIBRAD_WHY_CLUMP_HEAT = 30,   /* Members of a clump differ in temperature, or in what they store. */
+    FIBRAD_WHY_CLUMP_SOLID = 31,  /* A member of a clump has a finite conductivity. */
+    FIBRAD_WHY_CLUMP_LIGHT = 32   /* Light on clumps is not computed. */
 } fibrad_why;
 
 /* The cause of a fault, which may be any number, as words that continue a sentence: "sphere 3 ..." Never NULL. */
@@ -403,6 +406,12 @@ void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts)
  *   Output   NaN: i is out of range, or the scene is not complete
  *   Source   docs/methods.md section 5 */
 double fibrad_scene_exposed_area(const fibrad_scene *scene, uint32_t i);
+
+/* Volume of a sphere [L^3]. That of a clump, what its members overlap counted once, is shared out among the members in
+ * proportion to r^3.
+ *   Input    i: 0 to spheres - 1
+ *   Output   NaN: i is out of range, or the scene is not complete */
+double fibrad_scene_volume(const fibrad_scene *scene, uint32_t i);
 
 /* Area of a wall or an opening [L^2]: the part that bounds the container, in one period. For a mesh this is the sum
  * over all sides that belong to the wall.

@@ -62,9 +62,11 @@ int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad
 /* Goes on with another scene, or with the same scene rebuilt in place. All tasks must be traced again. The next
  * solution starts from the radiosities of the last one.
  *   Input    scene: as many spheres and triangles as before, the same walls in the same order, and the same openings.
+ *            It has clumps if the last one had.
  *            Each side of a triangle belongs to the same wall as before. Positions and sizes may differ.
  *   Errors   _ARGUMENT, _STATE
- *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for */
+ *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for; or
+ *            more members of clumps overlap */
 int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene);
 
 /* Starts the first solution of a new problem from the last one of another problem of the same scene. A surface that has
@@ -149,6 +151,10 @@ typedef struct fibrad_stream {
  * does: also on spheres of emissivity 0. On a sphere with a finite conductivity it acts point by point. With a stream
  * the films of spheres end in the gas of their slices, whose temperatures are found. `gas` is then not used.
  *
+ * A clump (fibrad_spheres.clump) has one temperature. Its members have the same given temperature, or none. Their
+ * powers, storages, films and contacts add up. Contacts between members carry nothing. Emissivities are their own.
+ * Members may have no finite conductivity.
+ *
  * With `contact_places` the contacts of a sphere with a finite conductivity act where the line to the other centre, or
  * the normal of the plane or cylinder, leaves the sphere. Contacts with meshes act on the mean of the sphere's
  * surface.
@@ -228,7 +234,7 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
  *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, there is no film, and there are contacts or
- *            the powers do not add up to zero
+ *            clumps or the powers do not add up to zero
  *            _UNSETTLED: the search has not ended after sweeps_max sweeps; there is no solution
  *   Level    If all temperatures are unknown, nothing escapes and there is no film, any level would do. The mean
  *            emission, weighted by emissivity and area, is then that of the surroundings. */
@@ -237,7 +243,8 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
  * A net power is above 0 where a surface gains heat, by radiation, through contacts and through its film. A given power
- * has the other sign: a sphere of power P (and storage 0) has the net power -P. Temperatures are written whether they
+ * has the other sign: a sphere of power P (and storage 0) has the net power -P. For a clump this holds in sum; what its
+ * members gain has estimated errors of its own. Temperatures are written whether they
  * were found or given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact and no film; or
  * only a temperature below zero would give the power.
  *

@@ -71,6 +71,7 @@ typedef struct fibrad_light_ends {
  *              FIBRAD_WHY_LIGHT: a number is out of range
  *              FIBRAD_WHY_DARK: no open face lets the light in
  *              FIBRAD_WHY_FOOTPRINT: the light meets a sphere before the disc
+ *            _UNSUPPORTED: the scene has clumps; fault.why is FIBRAD_WHY_CLUMP_LIGHT
  *            _WORK, _MEMORY
  *   Cost     as fibrad_beam_row with ten directions */
 int fibrad_light_empty(const fibrad_scene *scene, fibrad_work *work, const fibrad_light *light, fibrad_light_ends *ends,

@@ -36,6 +36,7 @@ static const struct option heat_table[] = {
     OPTIONS_CONTACTS(struct heat),
     OPTIONS_FILM(struct heat),
     OPTIONS_LIGHT(struct heat),
+    {OPTION_CLUMP},
     OPTIONS_TIME(struct heat),
     OPTIONS_INPUT,
     {OPTION_BED_OUTPUT(
@@ -46,6 +47,7 @@ static const struct option heat_table[] = {
     {0, "face", NULL, "find the emissivity of the open face of the bed, which has one temperature",
      TO_FLAG(struct heat, face.wanted)},
     OPTIONS_CONTACTS_RARE(struct heat),
+    {OPTION_MEMBERS(struct heat)},
     {OPTION_MELTING(struct heat)},
     OPTIONS_STREAM(struct heat),
     {OPTION_PROFILE(struct heat)},
@@ -87,7 +89,7 @@ static int heat_help(void) {
             "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
             "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
             "absorb.\n",
-            LIGHT_MORE, CONTACTS_MORE, FILM_MORE,
+            LIGHT_MORE, CONTACTS_MORE, FILM_MORE, CLUMPS_MORE,
             "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
             "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
             "the temperature of a wall (zmin:temperature=@TABLE), of the surroundings or of gas. The .csv then has\n"
@@ -128,6 +130,11 @@ static int check_heat(struct heat *h) {
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
     if (h->given.timed && h->face.wanted)
         return message(STATUS_USAGE, "--face is for powers at one time, not for --until");
+    if (h->members && !h->options.clump.given) return message(STATUS_USAGE, "--members needs --clump");
+    if (h->options.clump.given && (h->solid.given || h->light.lights > 0))
+        return message(STATUS_USAGE, "--clump: %s; leave out %s",
+                       h->solid.given ? "clumps have one temperature each" : "light on clumps is not computed",
+                       h->solid.given ? "--solid-conductivity" : "--irradiate");
     if (!h->emissivities.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad heat --help");
     if (h->error > 0 && counted)
         return message(

@@ -324,6 +324,19 @@ module fibrad
             type(fibrad_warning), intent(inout), optional :: warning(*)
             integer(c_int32_t) :: fibrad_bed_warnings
         end function fibrad_bed_warnings
+        function fibrad_bed_bodies(bed, body) bind(C)
+            import
+            type(c_ptr), value :: bed
+            integer(c_int32_t), intent(inout), optional :: body(*)
+            integer(c_int32_t) :: fibrad_bed_bodies
+        end function fibrad_bed_bodies
+        function fibrad_bed_surfaces(bed, area, volume) bind(C)
+            import
+            type(c_ptr), value :: bed
+            real(c_double), intent(inout), optional :: area(*)
+            real(c_double), intent(inout), optional :: volume(*)
+            integer(c_int) :: fibrad_bed_surfaces
+        end function fibrad_bed_surfaces
         subroutine fibrad_bed_free(bed) bind(C)
             import
             type(c_ptr), value :: bed

@@ -101,7 +101,8 @@ static int find_sphere_films(struct heat *h) {
                                  0, TEMPERATURE_MAX, &films->gas);
     if (!status && h->film.correlation) status = stream_coefficients(h, films->film);
     for (uint32_t i = 0; i < bed->n && !status; ++i)
-        films->film[i] *= 4 * M_PI * gsl_pow_2(bed->r[i] * bed->metres) * films->per_watt;
+        films->film[i] *= h->clumps.area ? heat_area(h, i) * gsl_pow_2(bed->metres) * films->per_watt
+                                         : 4 * M_PI * gsl_pow_2(bed->r[i] * bed->metres) * films->per_watt;
     return status;
 }
 

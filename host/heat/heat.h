@@ -177,6 +177,32 @@ struct film_state {
     double section, inlet_end;    /* [m2] cross-section; [K] temperature of the inlet at the end of a span of time */
 };
 
+/* ---- clumps: bodies of several spheres ----------------------------------------------------------------------------
+ */
+
+/* Row of a table of options, for a request with a field `members`, without braces. */
+#define OPTION_MEMBERS(request)                                                                                        \
+    0, "members", NULL, "with --clump: a line of each sphere in .csv and .json [a line of each clump]",                \
+        TO_FLAG(request, members)
+
+/* A paragraph of --help. */
+#define CLUMPS_MORE                                                                                                    \
+    "--clump: A clump is one body of one temperature; what its spheres hide of each other is no surface. Its\n"        \
+    "spheres have the same temperature or none; their powers add up. It stores heat by its volume, and gains\n"        \
+    "from gas by its exposed area, area_m2. The .csv and .json have a line a clump, i being its number; .vtp\n"        \
+    ".dump and --profile have the spheres. Contacts within a clump carry nothing.\n"
+
+/* Clumps of one bed. NULL: there are none. */
+struct clump_state {
+    uint32_t n;            /* number of bodies */
+    uint32_t *body;        /* [spheres] */
+    double *area, *volume; /* [spheres] exposed area and share of the volume [L^2, L^3] */
+    /* of the outputs */
+    struct bed bodies;
+    fibrad_heat_result result; /* [n] */
+    double *metres;            /* [spheres], then [n]: areas [m2] */
+};
+
 /* ---- a run of `fibrad heat`: what the options say, the bed in hand, its heat problem and the result -------------- */
 
 #define SECONDS_MAX 1e15
@@ -279,6 +305,7 @@ struct heat {
     struct film_options film;
     struct face face;
     struct profile profile;
+    bool members; /* outputs have a line for each member of a clump */
     struct quantity emissivities, solid;
     fibrad_heat_config config; /* directions 0: chosen by the emissivities of the bed */
     /* --error: error allowed in powers, and in sigma T^4 of temperatures that are found, over their root mean squares;
@@ -295,6 +322,7 @@ struct heat {
      * unit of sources.conductivity; NULL: spheres have one temperature each */
     double *conductivity, *conductivity_scaled;
     double per_watt;               /* sources.conductivity over conductivity */
+    struct clump_state clumps;     /* what of the bed are clumps */
     const fibrad_wall *around;     /* the cylinder whose axis a profile along r is measured from; NULL: none */
     struct light_state lit;        /* light from outside; its options NULL: there is none */
     struct contact_state touching; /* what conducts between spheres; options NULL: nothing does */
@@ -401,6 +429,18 @@ void film_at(struct heat *heat, double now, double end);
 /* Scales results to watts, and reports them. */
 void film_scale(struct heat *heat);
 void film_report(struct heat *heat);
+
+/* clump_heat.c: finds the clumps of a bed. Without clumps these functions do nothing. Call clumps_free also after an
+ * error. Status 0 or STATUS_MEMORY. */
+int clumps_begin(struct heat *heat);
+void clumps_free(struct clump_state *state);
+
+/* The surface [L^2] and the volume [L^3] of sphere i. */
+double heat_area(const struct heat *heat, uint32_t i);
+double heat_volume(const struct heat *heat, uint32_t i);
+
+/* Adds areas to what is written, and without --members the results of bodies. Status 0 or STATUS_MEMORY. */
+int clumps_result(struct heat *heat, const struct bed *bed, struct contents *what);
 
 /* stream.c: checks the options of gas that flows. Status 0 or STATUS_USAGE. */
 int stream_check(const struct film_options *options);

@@ -89,7 +89,8 @@ static int read_values(struct heat *h, struct bed *bed) {
     if (!status && !h->given.timed && !contacts_given(&h->contacts) && !film_given(h)) /* joined: by the library */
         status = given_reflectors(&h->values, h->emissivity, &h->walls, h->wall_emissivity, bed, h->options.name);
     if (!status) status = bed_options_metres(&h->options, bed, needed);
-    return status ? status : bed_options_make(&h->options, bed, &opened, &h->made);
+    if (!status) status = bed_options_make(&h->options, bed, &opened, &h->made);
+    return status ? status : clumps_begin(h);
 }
 
 /* An insulated wall in contact has one temperature, and the power 0. */
@@ -140,6 +141,7 @@ void heat_end(struct heat *h) {
     light_free(&h->lit);
     contacts_free(&h->touching);
     film_free(&h->films);
+    clumps_free(&h->clumps);
     given_free(&h->values);
     free(h->conductivity);
     free(h->conductivity_scaled);
@@ -176,7 +178,8 @@ int heat_write(struct heat *h, const struct bed *bed, struct contents *what) {
     if (!what->sources) what->sources = &h->sources;
     what->light = h->lit.options ? &h->lit.result : NULL;
     what->of_sides = &h->triangles;
-    int status = bed_options_write(&h->options, bed, what);
+    int status = clumps_result(h, bed, what);
+    if (!status) status = bed_options_write(&h->options, bed, what);
     if (!status) status = profile_write(h, what);
     return status ? status : contacts_write(&h->touching, bed, &h->walls);
 }

@@ -66,7 +66,8 @@ static void scale_result(struct heat *h, double square_metres) {
 static void bound_by_balance(struct heat *h) {
     fibrad_heat_result *result = &h->result;
     double *of[WALLS_MAX + 1] = {&result->surroundings_error}, all = result->surroundings_error + result->gas_error;
-    for (uint32_t i = 0; i < h->bed->n; ++i) all += result->power_error[i];
+    for (uint32_t i = 0; i < h->bed->n; ++i) /* of clumps of unknown temperatures the sum is given */
+        if (!isnan(h->sources.temperature[i])) all += result->power_error[i];
     for (uint32_t k = 0; k < h->walls.count; ++k) of[k + 1] = &result->wall_error[k], all += *of[k + 1];
     for (uint32_t k = 0; k <= h->walls.count; ++k)
         if (*of[k] > all / 2) *of[k] = fmax(all - *of[k], 0), k = h->walls.count; /* only one can be */

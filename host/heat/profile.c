@@ -42,8 +42,8 @@ static double place_of(const struct heat *h, uint32_t i) {
 
 /* How a column of outputs becomes one number of a bin. Errors are left out. */
 enum bin_kind { LEFT_OUT, SUM, MEAN, LEAST, MOST };
-static const enum bin_kind kind_of[HEAT_COLUMNS] = {MEAN, SUM,      LEFT_OUT, LEFT_OUT, LEAST, MOST, LEFT_OUT,
-                                                    MEAN, LEFT_OUT, SUM,      SUM,      SUM,   SUM,  SUM};
+static const enum bin_kind kind_of[HEAT_COLUMNS] = {MEAN,     SUM, LEFT_OUT, LEFT_OUT, LEAST, MOST, LEFT_OUT, MEAN,
+                                                    LEFT_OUT, SUM, SUM,      SUM,      SUM,   SUM,  SUM};
 
 /* A bin: the spheres whose centres lie in it, those of them that have a temperature, and its numbers. NaN: none yet. */
 struct bin {

@@ -151,6 +151,21 @@ void fibrad_bed_describe(const fibrad_bed *bed, fibrad_scene_facts *facts, fibra
     if (bed && fault) *fault = bed->fault;
 }
 
+uint32_t fibrad_bed_bodies(const fibrad_bed *bed, uint32_t *body) {
+    if (!bed) return 0;
+    for (uint32_t i = 0; i < bed->facts.spheres && body; ++i) body[i] = bed->bodies ? bed->bodies->body[i] : i;
+    return bed->bodies ? bed->bodies->n : bed->facts.spheres;
+}
+
+int fibrad_bed_surfaces(const fibrad_bed *bed, double *area, double *volume) {
+    if (!bed) return FIBRAD_E_ARGUMENT;
+    for (uint32_t i = 0; i < bed->facts.spheres; ++i) {
+        if (area) area[i] = fibrad_scene_exposed_area(bed->scene, i);
+        if (volume) volume[i] = fibrad_scene_volume(bed->scene, i);
+    }
+    return FIBRAD_OK;
+}
+
 void fibrad_bed_free(fibrad_bed *bed) {
     if (!bed) return;
     fibrad_team_close(&bed->team);

@@ -4,6 +4,7 @@
  *   run      threads, progress, cancelling                  fibrad_run
  *   bed      spheres and walls: made, moved, freed          fibrad_bed_new, _move, _free
  *            facts, where an error is, probable mistakes    fibrad_bed_describe, _warnings
+ *            clumps; areas and volumes                      fibrad_bed_bodies, _surfaces
  *   factors  view factors and exchange factors of a bed     fibrad_bed_factors, fibrad_bed_matrix_free
  *            area and row of a wall; a bed's factors        fibrad_bed_wall_area, _wall_row, fibrad_view_factors
  *   heat     net powers and temperatures                    fibrad_bed_solve; fibrad_bed_sides: of triangles
@@ -124,6 +125,16 @@ typedef struct fibrad_warning {
  *   Output   warning[FIBRAD_WARNINGS_MAX]
  *   Errors   none. Returns the number of warnings. NULL for bed is allowed. */
 uint32_t fibrad_bed_warnings(const fibrad_bed *bed, fibrad_warning *warning);
+
+/* The bodies of the bed: clumps, and spheres that are alone, in the order of their first spheres.
+ *   Output   body[spheres]: number of the body of each sphere; may be NULL
+ *   Errors   none. Returns the number of bodies; 0: bed is NULL. */
+uint32_t fibrad_bed_bodies(const fibrad_bed *bed, uint32_t *body);
+
+/* Exposed areas and volumes of spheres: fibrad_scene_exposed_area and fibrad_scene_volume.
+ *   Output   area[spheres], volume[spheres]: L^2 and L^3; may be NULL
+ *   Errors   _ARGUMENT */
+int fibrad_bed_surfaces(const fibrad_bed *bed, double *area, double *volume);
 
 /* Frees a bed. NULL is allowed.
  *   Errors   none */
@@ -376,7 +387,8 @@ typedef struct fibrad_span {
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * if there are contacts or films, or if the temperature of a wall is to be found, as that of a wall with a capacity.
+ * if there are contacts, films or clumps, or if the temperature of a wall is to be found, as that of a wall with a
+ * capacity. The members of a clump begin at one temperature, equally melted, and have the same store.
  *
  *   field of sources                    use
  *   temperature, storage, reference     not used

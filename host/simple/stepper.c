@@ -22,6 +22,7 @@
 #include <string.h>
 
 #include "simple/bed.h"
+#include "simple/bodies.h"
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
 #define TOLERANCE 1e-4
@@ -96,8 +97,21 @@ static void set_surfaces(struct stepper *m) {
     if (law) law->follow(law->context, t->guess, t->wall_seen, t->emissivity, t->wall_emissivity);
 }
 
+/* The spheres of body b: the members of a clump, or one. */
+static const uint32_t *members_of(const struct stepper *m, const uint32_t *b, uint32_t *count) {
+    const fibrad_bodies *bodies = m->bed->bodies;
+    *count = bodies ? bodies->start[*b + 1] - bodies->start[*b] : 1;
+    return bodies ? bodies->member + bodies->start[*b] : b;
+}
+
+static uint32_t bodies_of(const struct stepper *m) {
+    return m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
+}
+
 /* Whether a sphere exchanges no heat with any other. */
 static bool stands_alone(const struct stepper *m, uint32_t i) {
+    const fibrad_bodies *bodies = m->bed->bodies;
+    if (bodies && bodies->start[bodies->body[i] + 1] - bodies->start[bodies->body[i]] > 1) return false;
     return m->sources.emissivity[i] == 0 && m->t->conducts[i] == 0;
 }
 
@@ -134,20 +148,33 @@ static void linearise(struct stepper *m, double length) {
     }
 }
 
+/* The heat that sphere i has gained, over its capacity. In a clump all is gained together. */
+static double gained(const struct stepper *m, uint32_t i, double length) {
+    const fibrad_bodies *bodies = m->bed->bodies;
+    double power = 0, capacity = 0;
+    uint32_t count;
+    const uint32_t b = bodies ? bodies->body[i] : i, *member = members_of(m, &b, &count);
+    for (uint32_t k = 0; k < count; ++k)
+        power += power_of(m, member[k]) + m->t->power[member[k]], capacity += m->span->capacity[member[k]];
+    return length * power / capacity;
+}
+
 /* Takes the solution of the linear problem. t->solution gets the heats that keep the energy, t->heat and t->guess those
  * about which Newton's method goes on. Returns whether the two agree. halved: heats of what melts go half the way. */
 static bool accept_solution(struct stepper *m, double length, bool halved) {
     fibrad_stepping *t = m->t;
     bool agree = true;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const double at = t->guess[i], last = t->heat[i], capacity = m->span->capacity[i], ratio = t->found[i] / at;
-        const double warmed = t->base[i] + length * power_of(m, i) / capacity;
+        const double at = t->guess[i], last = t->heat[i], ratio = t->found[i] / at;
+        const body_sum body = sum_of_body(m, i);
+        const double warmed = t->base[i] + length * body.given / body.capacity;
         const fibrad_stored from = stored_at(m, i, last);
         const bool alone = stands_alone(m, i), melts = from.capacity == INFINITY;
-        t->solution[i] = is_held(m, i) ? last
-                         : alone       ? warmed
-                         : melts       ? warmed + length * t->power[i] / capacity
-                                       : last + from.capacity * (0.25 * at * (ratio * ratio * ratio * ratio - 1));
+        t->solution[i] = is_held(m, i)    ? last
+                         : alone          ? warmed
+                         : !melts         ? last + from.capacity * (0.25 * at * (ratio * ratio * ratio * ratio - 1))
+                         : m->bed->bodies ? t->base[i] + gained(m, i, length)
+                                          : warmed + length * t->power[i] / capacity;
         const fibrad_stored to = stored_at(m, i, t->solution[i]);
         const double found = alone ? to.temperature : t->found[i], near = found > at / 2 ? found : at / 2;
         agree = agree && near == found && fabs(found - to.temperature) <= SOLVED * m->tolerance * found;
@@ -179,23 +206,34 @@ static void accept_walls(struct stepper *m, double length) {
 static void balance_energy(struct stepper *m, double length) {
     fibrad_stepping *t = m->t;
     double left = -m->result.surroundings_power - m->result.gas_power, capacity = 0, of_walls = 0;
+    const uint32_t bodies = m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b) {
         left -= m->result.wall_power[b];
         if (wall_stores(m, b)) of_walls += m->span->wall_capacity[b];
     }
-    for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
-        const fibrad_stored to = stored_at(m, i, t->solution[i]);
-        const double rate = m->span->capacity[i] / length, at = to.temperature;
-        const double stiff =
-            4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
-        const double missing = power_of(m, i) + t->power[i] - rate * (t->solution[i] - t->base[i]);
-        if (is_held(m, i)) {
-            left -= t->power[i];
-            continue;
+    for (uint32_t b = 0; b < bodies; ++b) {
+        double missing = 0, stiffness = 0;
+        uint32_t count;
+        const uint32_t *member = members_of(m, &b, &count);
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t i = member[k];
+            const fibrad_stored to = stored_at(m, i, t->solution[i]);
+            const double rate = m->span->capacity[i] / length, at = to.temperature;
+            const double stiff =
+                4 * m->given->sigma * at * at * at * t->area[i] * m->sources.emissivity[i] + t->conducts[i];
+            missing += power_of(m, i) + t->power[i] - rate * (t->solution[i] - t->base[i]);
+            stiffness += rate + stiff / to.capacity;
         }
-        t->solution[i] += missing / (rate + stiff / to.capacity);
-        left += power_of(m, i) - rate * (t->solution[i] - t->base[i]);
-        capacity += m->span->capacity[i];
+        for (uint32_t k = 0; k < count; ++k) {
+            const uint32_t i = member[k];
+            if (is_held(m, i)) {
+                left -= t->power[i];
+                continue;
+            }
+            t->solution[i] += missing / stiffness;
+            left += power_of(m, i) - m->span->capacity[i] / length * (t->solution[i] - t->base[i]);
+            capacity += m->span->capacity[i];
+        }
     }
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i)
         if (!is_held(m, i)) t->solution[i] += left * length / capacity;
@@ -373,6 +411,21 @@ static int take_steps(struct stepper *m) {
     return FIBRAD_OK;
 }
 
+/* The first member of the clump of a sphere. */
+static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
+    return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
+}
+
+/* Whether a sphere stores heat as the first member of its clump, and begins as it. */
+static bool is_like_first(const fibrad_bed *bed, const fibrad_span *span, uint32_t i) {
+    const uint32_t first = first_member(bed, i);
+    return span->temperature[i] == span->temperature[first] &&
+           (span->capacity[i] == INFINITY) == (span->capacity[first] == INFINITY) &&
+           (!span->store_of || span->store_of[i] == span->store_of[first]) &&
+           (!span->melted || span->melted[i] == span->melted[first] ||
+            (isnan(span->melted[i]) && isnan(span->melted[first])));
+}
+
 /* Checks stores, and walls with a capacity. */
 static int check_stores(fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
     if (!span->store != (span->stores == 0)) return FIBRAD_E_ARGUMENT;
@@ -396,6 +449,7 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < n; ++i) {
         const double capacity = span->capacity[i];
+        const uint32_t first = first_member(bed, i);
         const int why = !(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)
                             ? FIBRAD_WHY_TEMPERATURE
                         : !(capacity > 0 && (capacity <= FIBRAD_CAPACITY_MAX || capacity == INFINITY)) ||
@@ -403,6 +457,7 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
                             ? FIBRAD_WHY_CAPACITY
                         : s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX) ? FIBRAD_WHY_POWER
                         : !(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)    ? FIBRAD_WHY_EMISSIVITY
+                        : !is_like_first(bed, span, i)                         ? FIBRAD_WHY_CLUMP_HEAT
                                                                                : 0;
         if (why) bed->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
         if (why) return FIBRAD_E_ARGUMENT;
@@ -417,9 +472,9 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
- * contacts and no films, and the temperatures of walls and surroundings are known. */
+ * contacts, no films and no clumps, and the temperatures of walls and surroundings are known. */
 static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
-    bool suffice = !span->law && !s->conductivity && s->contacts == 0 && !s->film && !s->wall_film;
+    bool suffice = !span->law && !s->conductivity && s->contacts == 0 && !s->film && !s->wall_film && !bed->bodies;
     suffice = suffice && s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
     for (uint32_t b = 0; b < bed->facts.walls; ++b)
         suffice = suffice && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&

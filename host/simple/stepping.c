@@ -27,7 +27,8 @@ static int take_arrays(fibrad_bed *bed) {
 int fibrad_stepping_make(fibrad_bed *bed) {
     const int status = bed->stepping.area ? FIBRAD_OK : take_arrays(bed);
     for (uint32_t i = 0; i < bed->facts.spheres && !status; ++i)
-        bed->stepping.area[i] = 4 * M_PI * bed->spheres.r[i] * bed->spheres.r[i];
+        bed->stepping.area[i] =
+            bed->bodies ? fibrad_scene_exposed_area(bed->scene, i) : 4 * M_PI * bed->spheres.r[i] * bed->spheres.r[i];
     return status;
 }
 

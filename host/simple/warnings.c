@@ -170,7 +170,7 @@ void fibrad_bed_warn_of_surfaces(fibrad_bed *bed, const fibrad_heat_result *resu
 
 void fibrad_bed_warn_of_stores(fibrad_bed *bed, const double *capacity) {
     for (uint32_t i = 0; i < bed->facts.spheres; ++i) {
-        const double r = bed->spheres.r[i], store = capacity[i] / (4 * M_PI / 3 * r * r * r);
+        const double store = capacity[i] / fibrad_scene_volume(bed->scene, i);
         if ((store >= STORE_LOW && store <= STORE_HIGH) || store == INFINITY) continue;
         new_warning(bed->warning, FIBRAD_WARNING_STORE, i, store);
         return;

@@ -10,6 +10,14 @@ const char *contents_wall(const struct contents *what, uint32_t k, char name[WAL
     return name;
 }
 
+struct contents contents_table(const struct contents *what) {
+    struct contents table = *what;
+    if (what->bodies)
+        table.bed = what->bodies, table.result = what->of_bodies, table.area = what->area_of_bodies,
+        table.melted = what->melted_of_bodies;
+    return table;
+}
+
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]) {
     const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
@@ -29,7 +37,8 @@ void heat_columns(const struct contents *what, struct heat_column column[HEAT_CO
         {"q_radiation_W", parts, r->conducted, r->convected},
         {"q_conduction_W", r->conducted, NULL, NULL},
         {"q_convection_W", r->convected, NULL, NULL},
-        {"melted", what->melted, NULL, NULL}};
+        {"melted", what->melted, NULL, NULL},
+        {"area_m2", what->area, NULL, NULL}};
     memcpy(column, all, sizeof all);
 }
 
@@ -37,7 +46,7 @@ const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_N
     const fibrad_heat_result *r = what->result;
     const fibrad_light_result *light = what->light;
     for (int c = 0; c < HEAT_COLUMNS; ++c)
-        value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c == HEAT_MELTED ? NAN : 0;
+        value[c] = (c >= HEAT_INSIDE && c < HEAT_LIGHT) || c >= HEAT_MELTED ? NAN : 0;
     if (k == what->walls->count) {
         const fibrad_stream *stream = what->sources->stream;
         value[HEAT_TEMPERATURE] = stream ? stream->gas[stream->slices - 1] : NAN, value[HEAT_TEMPERATURE_ERROR] = NAN;
@@ -51,6 +60,7 @@ const char *heat_outside(const struct contents *what, int64_t k, char own[WALL_N
             value[HEAT_LIGHT] = light->transmitted, value[HEAT_LIGHT + 1] = light->transmitted + light->reflected;
         return isnan(value[HEAT_TEMPERATURE]) ? NULL : "surroundings";
     }
+    if (what->area) value[HEAT_AREA] = r->wall_area[k];
     value[HEAT_TEMPERATURE] = r->wall_temperature[k], value[HEAT_TEMPERATURE_ERROR] = r->wall_temperature_error[k];
     value[HEAT_POWER] = r->wall_power[k], value[HEAT_POWER_ERROR] = r->wall_error[k];
     if (light) value[HEAT_LIGHT] = light->wall_absorbed_first[k], value[HEAT_LIGHT + 1] = light->wall_absorbed[k];

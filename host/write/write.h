@@ -38,10 +38,14 @@ struct contents {
 
     const struct side_arrays *of_sides; /* values of the triangles of meshes; NULL: none */
 
-    const fibrad_heat_sources *sources; /* [K]; surroundings NaN: the bed is closed */
-    const fibrad_light_result *light;   /* [W], light from outside that is absorbed; NULL: there is no light */
-    const fibrad_heat_result *result;   /* [W], [K]; arrays of insides are all set or all NULL, other arrays are set */
-    const double *melted;               /* [n] fractions; NULL: nothing melts */
+    const fibrad_heat_sources *sources;  /* [K]; surroundings NaN: the bed is closed */
+    const fibrad_light_result *light;    /* [W], light from outside that is absorbed; NULL: there is no light */
+    const fibrad_heat_result *result;    /* [W], [K]; arrays of insides are all set or all NULL, other arrays are set */
+    const double *melted;                /* [n] fractions; NULL: nothing melts */
+    const double *area;                  /* [n] [m2] exposed; NULL: there are no clumps */
+    const struct bed *bodies;            /* what has lines in .csv and .json; NULL: spheres have */
+    const fibrad_heat_result *of_bodies; /* the same of bodies */
+    const double *area_of_bodies, *melted_of_bodies;
 
     const struct conduction *conduction;
 };
@@ -66,7 +70,7 @@ struct heat_column {
 };
 
 /* Columns from HEAT_INSIDE on belong to spheres that conduct, those from HEAT_LIGHT on to light from outside, those
- * from HEAT_PARTS on are parts of the power. The last one is the fraction that has melted. */
+ * from HEAT_PARTS on are parts of the power. Then come the fraction that has melted, and areas beside clumps. */
 enum {
     HEAT_TEMPERATURE,
     HEAT_POWER,
@@ -76,8 +80,13 @@ enum {
     HEAT_LIGHT = 9,
     HEAT_PARTS = 11,
     HEAT_MELTED = 14,
+    HEAT_AREA,
     HEAT_COLUMNS
 };
+
+/* The contents of .csv and .json: with clumps as bodies if what->bodies is set. */
+struct contents contents_table(const struct contents *what);
+
 void heat_columns(const struct contents *what, struct heat_column column[HEAT_COLUMNS]);
 
 /* The same of wall k, of the surroundings (k = -1) or of the gas of films (k = number of walls), whose insides are NaN.

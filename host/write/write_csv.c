@@ -145,12 +145,13 @@ static void write_power(struct csv *csv, int64_t name, const char *wall, const s
     for (int k = 0; k < HEAT_COLUMNS; ++k) {
         if (!column[k].value) continue;
         at = put_comma(at);
-        at = k > HEAT_POWER && k < HEAT_LIGHT ? put_error(at, value[k]) : text_real(at, value[k]);
+        at = (k > HEAT_POWER && k < HEAT_LIGHT) || k == HEAT_AREA ? put_error(at, value[k]) : text_real(at, value[k]);
     }
     end_line(csv, at, wall);
 }
 
-int write_heat_csv(FILE *file, const struct contents *what) {
+int write_heat_csv(FILE *file, const struct contents *all) {
+    const struct contents table = contents_table(all), *what = &table;
     struct csv csv = {.named = true};
     struct heat_column column[HEAT_COLUMNS];
     char wall[WALL_NAME], names[220] = "i";

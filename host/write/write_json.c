@@ -114,7 +114,8 @@ static void json_column(FILE *file, const struct heat_column *column, uint32_t n
     putc(']', file);
 }
 
-int write_heat_json(FILE *file, const struct contents *what) {
+int write_heat_json(FILE *file, const struct contents *all) {
+    const struct contents table = contents_table(all), *what = &table;
     const uint32_t walls = what->walls ? what->walls->count : 0;
     struct heat_column column[HEAT_COLUMNS];
     char wall[WALL_NAME];

@@ -26,7 +26,7 @@ double fibrad_contact_temperature(const fibrad_contacts *c, double emission) {
 void fibrad_contact_mark(fibrad_contacts *c) {
     fibrad_zero(c->kind, c->nodes);
     for (uint32_t k = 0; k < c->count; k++)
-        if (c->conductance[k] > 0 && c->first[k] != c->second[k])
+        if (c->conductance[k] > 0 && c->node[c->first[k]] != c->node[c->second[k]])
             c->kind[c->node[c->first[k]]] = c->kind[c->node[c->second[k]]] = FIBRAD_CONTACT_GIVEN;
 }
 
@@ -214,7 +214,8 @@ static void find_missing(fibrad_contacts *c) {
 static double largest_on(const fibrad_contacts *c, fibrad_contact_kind least, const double *value) {
     double largest = 0;
     for (uint32_t b = 0; b < c->nodes; b++)
-        if (c->kind[b] >= least) largest = fibrad_max(largest, fibrad_abs(value[b]));
+        if (c->kind[b] >= least && c->kind[b] <= FIBRAD_CONTACT_FREE)
+            largest = fibrad_max(largest, fibrad_abs(value[b]));
     return largest;
 }
 

@@ -22,9 +22,10 @@
 #include <stdbool.h>
 
 typedef enum fibrad_contact_kind {
-    FIBRAD_CONTACT_NONE,  /* the node has no contacts and no film */
-    FIBRAD_CONTACT_GIVEN, /* its temperature is given, or nothing is known of it yet */
-    FIBRAD_CONTACT_FREE   /* its temperature is to be found */
+    FIBRAD_CONTACT_NONE,   /* the node has no contacts and no film */
+    FIBRAD_CONTACT_GIVEN,  /* its temperature is given, or nothing is known of it yet */
+    FIBRAD_CONTACT_FREE,   /* its temperature is to be found */
+    FIBRAD_CONTACT_FOLLOWS /* it is no node of its own, and has the temperature of a node that is free */
 } fibrad_contact_kind;
 
 typedef struct fibrad_contacts {
@@ -47,10 +48,13 @@ typedef struct fibrad_contacts {
     double *shadow, *sent;               /* [nodes], the same, with a stream */
     const fibrad_stream *stream;         /* NULL: none */
     uint32_t *slice;                     /* [nodes], of the film; UINT32_MAX: its gas is given */
+    const uint32_t *leader;              /* [nodes with slices], the node of a member of a clump; NULL: no clumps */
+    double *own_film, *own_gas;          /* film, gas; with clumps those of members */
     bool streaming;                      /* gas of the stream follows temperatures within fibrad_contact_find */
     double least;                        /* K, slopes are those at temperatures of at least this */
     bool anchored;                       /* a given temperature holds, by contacts, what radiates */
     bool afresh;                         /* no earlier solution tells where temperatures are */
+    double more;                         /* sigma K^4, arrives at the end besides supplies, per emissivity times area */
 } fibrad_contacts;
 
 /* What belongs together, while sources are checked. A component is a set of nodes that exchange heat. Node `nodes`

@@ -34,11 +34,27 @@ static stream_heat heat_of_gas(const fibrad_stream *s, double t) {
     return (stream_heat){capacity, content + capacity * (t - from)};
 }
 
-/* Adds up film times value by slice. */
+/* The node of a film. */
+static uint32_t node_of(const fibrad_contacts *c, uint32_t b) {
+    return c->leader != NULL && c->leader[b] != UINT32_MAX ? c->leader[b] : b;
+}
+
+/* Gives films the gas of their slices. The film of a clump has the mean of those of its members. */
+static void take_gas(fibrad_contacts *c, const double *gas) {
+    for (uint32_t b = 0; b < c->nodes; b++)
+        if (c->slice[b] != UINT32_MAX) c->own_gas[b] = gas[c->slice[b]];
+    for (uint32_t b = 0; b < c->nodes && c->leader != NULL; b++)
+        if (c->slice[b] != UINT32_MAX) c->gas[node_of(c, b)] = 0;
+    for (uint32_t b = 0; b < c->nodes && c->leader != NULL; b++)
+        if (c->slice[b] != UINT32_MAX) c->gas[node_of(c, b)] += c->own_film[b] / c->film[node_of(c, b)] * c->own_gas[b];
+}
+
+/* Adds up film times value of nodes by slice. */
 static void sum_films(const fibrad_contacts *c, const double *value, double *sum) {
     fibrad_zero(sum, c->stream->slices * sizeof *sum);
     for (uint32_t b = 0; b < c->nodes; b++)
-        if (c->slice[b] != UINT32_MAX) sum[c->slice[b]] += value != NULL ? c->film[b] * value[b] : c->film[b];
+        if (c->slice[b] != UINT32_MAX)
+            sum[c->slice[b]] += value != NULL ? c->own_film[b] * value[node_of(c, b)] : c->own_film[b];
 }
 
 void fibrad_stream_find(fibrad_contacts *c) {
@@ -56,8 +72,7 @@ void fibrad_stream_find(fibrad_contacts *c) {
         }
         gas[k] = t;
     }
-    for (uint32_t b = 0; b < c->nodes; b++)
-        if (c->slice[b] != UINT32_MAX) c->gas[b] = gas[c->slice[b]];
+    take_gas(c, gas);
 }
 
 void fibrad_stream_respond(const fibrad_contacts *c, const double *x, double *product) {
@@ -71,5 +86,5 @@ void fibrad_stream_respond(const fibrad_contacts *c, const double *x, double *pr
         enters = capacity * change[k];
     }
     for (uint32_t b = 0; b < c->nodes; b++)
-        if (c->slice[b] != UINT32_MAX) product[b] -= c->film[b] * change[c->slice[b]];
+        if (c->slice[b] != UINT32_MAX) product[node_of(c, b)] -= c->own_film[b] * change[c->slice[b]];
 }

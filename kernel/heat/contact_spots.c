@@ -210,7 +210,7 @@ static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
 static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) {
     const fibrad_contacts *c = &heat->contacts;
     const fibrad_heat_spots *s = &heat->spots;
-    const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+    const uint32_t i = heat->end[c->first[k]], j = heat->end[c->second[k]];
     const double given = s->given[k], last = s->flow[k], inf = __builtin_inf();
     s->conductance[k] = given, s->offset[k] = 0;
     if (!(given > 0) || i == j) return 0;
@@ -258,7 +258,7 @@ void fibrad_heat_place_flows(fibrad_heat *heat) {
     double axis[3], away;
     fibrad_zero(s->entering, heat->patches * sizeof *s->entering);
     for (uint32_t k = 0; k < c->count; k++) {
-        const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+        const uint32_t i = heat->end[c->first[k]], j = heat->end[c->second[k]];
         s->flow[k] = s->next[k];
         if (i == j) continue;
         if (i < heat->spheres && direction_of_spot(heat, i, j, axis, &away)) enter_at(heat, i, axis, -s->flow[k]);
@@ -269,5 +269,5 @@ void fibrad_heat_place_flows(fibrad_heat *heat) {
 void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to) {
     const fibrad_contacts *c = &heat->contacts;
     for (uint32_t k = 0; k < c->count && heat->spots.entering != NULL; k++)
-        to[c->node[c->first[k]]] -= heat->spots.offset[k], to[c->node[c->second[k]]] += heat->spots.offset[k];
+        to[heat->end[c->first[k]]] -= heat->spots.offset[k], to[heat->end[c->second[k]]] += heat->spots.offset[k];
 }

@@ -343,8 +343,8 @@ static void find_pools(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     }
 }
 
-double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
-    if (fibrad_heat_is_free(heat, b)) return 0; /* the power is given */
+/* Of the power of a body, whether it is given or not. */
+static double estimated_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
     const double exchange = exchange_of(heat, errors, b);
     const int own = b >= heat->spheres;
     double sum = 0, samples = 0;
@@ -354,14 +354,23 @@ double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_err
         const double weight = kind == own ? pool->samples : fibrad_max(0, SAMPLES_ENOUGH - errors->pool[own].samples);
         sum += weight * pool->errors / pool->exchanges, samples += weight;
     }
-    const double pooled = samples > 0 ? sum / samples * squared(exchange) : 0;
+    const double sample = exchange > 0 ? own_sample(heat, errors, b) : 0;
+    const double alone = b < heat->spheres ? sample : 0; /* the powers of all others are given */
+    const double pooled = samples > 0 ? sum / samples * squared(exchange) : alone;
     const double smooth = b < heat->spheres ? spot_error(heat, b) : patch_error(heat, b);
-    const double all = exchange > 0 ? squared(smooth) + (own_sample(heat, errors, b) + pooled) / 2 : 0;
+    const double all = exchange > 0 ? squared(smooth) + (sample + pooled) / 2 : 0;
     return is_exact(heat, b) ? fibrad_min(all, exact_error(heat, b)) : all;
+}
+
+double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
+    return fibrad_heat_is_free(heat, b) ? 0 : estimated_error(heat, errors, b);
 }
 
 double fibrad_heat_power_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
     const double square = fibrad_heat_radiated_error(heat, errors, b);
+    if (fibrad_heat_is_free(heat, b) && fibrad_heat_is_member(heat, b)) /* that of the whole clump is given */
+        return fibrad_sqrt(estimated_error(heat, errors, b) + heat->contacts.supply[b] +
+                           squared(heat->film[b] * heat->contacts.error[b]));
     if (!heat->contacts.joins || fibrad_heat_is_free(heat, b)) return fibrad_sqrt(square);
     return fibrad_sqrt(square + heat->contacts.supply[b]);
 }
@@ -531,8 +540,10 @@ static void find_absorbed_errors(const fibrad_heat *heat, const fibrad_heat_erro
         c.load[b] = heat->sources.emissivity[b] * own.area;
         c.error[b] = c.load[b] * fibrad_sqrt(absorbed_of(heat, errors, b, &own).own);
     }
+    fibrad_heat_sum_clumps(heat, c.load);
     fibrad_contact_warm(&c);
     fibrad_copy(c.direction, c.warming, heat->bodies * sizeof *c.direction);
+    fibrad_heat_follow_leaders(heat, c.direction);
 }
 
 /* Sets contacts.supply to what errors of single surfaces make of all emissions: means over random signs. */
@@ -541,9 +552,25 @@ static void average_signs(const fibrad_heat *heat) {
     fibrad_zero(c.supply, heat->bodies * sizeof *c.supply);
     for (uint32_t number = 0; number < SIGNS; number++) {
         for (uint32_t b = 0; b < heat->bodies; b++) c.load[b] = sign_of(b, number) * c.error[b];
+        fibrad_heat_sum_clumps(heat, c.load);
         fibrad_contact_warm(&c);
         for (uint32_t b = 0; b < heat->bodies; b++) c.supply[b] += squared(c.warming[b]) / SIGNS;
     }
+}
+
+/* Gives the members of clumps the root mean square of their errors, by emissivity times area. */
+static void average_members(const fibrad_heat *heat, double *error) {
+    fibrad_contacts c = heat->contacts;
+    if (!heat->clumps.some) return;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        c.load[b] = fibrad_heat_is_member(heat, b) ? heat->sources.emissivity[b] * spread_of(heat, b).area : 0;
+        c.product[b] = c.load[b] * squared(error[b]);
+    }
+    fibrad_heat_sum_clumps(heat, c.load);
+    fibrad_heat_sum_clumps(heat, c.product);
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        if (c.load[b] > 0) error[b] = fibrad_sqrt(c.product[b] / c.load[b]);
+    fibrad_heat_follow_leaders(heat, error);
 }
 
 /* Sets contacts.error to the errors of temperatures of joined surfaces, which contacts pass on to each other, and
@@ -552,6 +579,7 @@ static void find_joined_errors(const fibrad_heat *heat, const fibrad_heat_errors
     const fibrad_contacts *c = &heat->contacts;
     find_absorbed_errors(heat, errors);
     average_signs(heat);
+    fibrad_heat_follow_leaders(heat, c->supply);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const double slope = slope_at(heat, fibrad_abs(c->temperature[b]));
         const fibrad_heat_spread own = spread_of(heat, b);
@@ -562,9 +590,10 @@ static void find_joined_errors(const fibrad_heat *heat, const fibrad_heat_errors
         c->error[b] =
             fibrad_sqrt(changed + c->supply[b] + squared(c->direction[b]) * (absorbed.common + absorbed.walls)) / slope;
     }
+    average_members(heat, c->error);
     fibrad_zero(c->supply, heat->bodies * sizeof *c->supply);
     for (uint32_t k = 0; k < c->count; k++) {
-        const uint32_t i = c->node[c->first[k]], j = c->node[c->second[k]];
+        const uint32_t i = heat->end[c->first[k]], j = heat->end[c->second[k]];
         c->supply[i] += squared(c->conductance[k] * c->error[j]),
             c->supply[j] += squared(c->conductance[k] * c->error[i]);
     }

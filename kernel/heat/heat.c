@@ -2,6 +2,7 @@
  */
 #include "base/arena.h"
 #include "base/dispatch.h"
+#include "patches/clump_caps.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
@@ -103,6 +104,17 @@ static void take_contacts(fibrad_arena *arena, fibrad_heat *heat) {
     heat->checked = fibrad_arena_take(arena, 1, sizeof *heat->checked);
 }
 
+/* Takes the arrays of clumps, if the scene has any. */
+static void take_clumps(fibrad_arena *arena, fibrad_heat *heat) {
+    heat->end = heat->contacts.node, heat->film = heat->contacts.film, heat->gas = heat->contacts.gas;
+    if (heat->scene->clump == NULL) return;
+    heat->end = fibrad_arena_take(arena, heat->spheres + FIBRAD_WALLS_MAX, sizeof *heat->end);
+    fibrad_arena_doubles(arena, heat->bodies, (double **const[]){&heat->film, &heat->gas, NULL});
+    heat->clumps.leader = fibrad_arena_take(arena, heat->spheres, sizeof *heat->clumps.leader);
+    heat->clumps.first_cap = fibrad_arena_take(arena, heat->spheres + (size_t)1, sizeof *heat->clumps.first_cap);
+    heat->clumps.cap = fibrad_arena_take(arena, heat->clumps.room, sizeof *heat->clumps.cap);
+}
+
 /* Takes the arrays from the arena. The caller copies the object itself to the address that is returned. */
 static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     fibrad_heat *place = fibrad_arena_take(arena, 1, sizeof *place);
@@ -133,6 +145,7 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
         h->value = fibrad_arena_take(arena, FIBRAD_HARMONICS_KINDS * h->orbits * h->many, sizeof *h->value);
     }
     take_contacts(arena, heat);
+    take_clumps(arena, heat);
     fibrad_arena_doubles(arena, spheres,
                          (double **const[]){&heat->sources.conductivity, &heat->sources.unevenness, NULL});
     heat->solution.span = fibrad_arena_take(arena, spheres, sizeof *heat->solution.span);
@@ -168,6 +181,8 @@ static int dimension_anew(fibrad_heat *heat, const fibrad_heat_config *config, c
     const uint64_t nodes = fibrad_heat_count_nodes(heat);
     if (nodes > HEAT_NODES_MAX) return FIBRAD_E_UNSUPPORTED;
     add_room(heat, (uint32_t)nodes);
+    const size_t caps = fibrad_heat_count_caps(scene);
+    heat->clumps.room = caps + caps / 4;
     heat->pencils.room = fibrad_heat_room(heat);
     return FIBRAD_OK;
 }
@@ -195,6 +210,32 @@ static uint32_t patches_of(const fibrad_heat *heat, uint32_t b) {
     return b < beyond + FIBRAD_WALLS ? heat->wall[b - beyond].unbounded : 1;
 }
 
+/* The normal where the beam of a point leaves. */
+static void normal_of_beam(const fibrad_disc_points *set, const double frame[9], uint32_t p, double n[3]) {
+    const double x = set->x[p], y = set->y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+    for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+}
+
+/* Divides the beams that leave the exposed part of a member of a clump by its area. */
+static void correct_densities(fibrad_heat *heat) {
+    const uint32_t points = heat->config.points;
+    fibrad_disc_points set = {NULL, NULL};
+    if (fibrad_disc_points_get(points, &set) != FIBRAD_OK) return;
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        uint32_t open = 0;
+        if (!fibrad_heat_is_member(heat, b)) continue;
+        for (uint32_t k = 0; k < heat->config.directions; k++) {
+            double frame[9], n[3];
+            fibrad_beam_frame(k, heat->config.directions, points, frame);
+            for (uint32_t p = 0; p < points; p++) {
+                normal_of_beam(&set, frame, p, n);
+                open += !fibrad_heat_is_hidden(heat, b, n);
+            }
+        }
+        if (open > 0) heat->density[b] = open / heat->scene->clumps.exposed[b];
+    }
+}
+
 /* Sets the first patch of each body, and how many beams leave each sphere per area. */
 static void number_patches(fibrad_heat *heat) {
     const fibrad_scene *scene = heat->scene;
@@ -202,6 +243,7 @@ static void number_patches(fibrad_heat *heat) {
     for (uint32_t b = 0; b < heat->bodies; b++) heat->first[b + 1] = heat->first[b] + patches_of(heat, b);
     for (uint32_t b = 0; b < heat->spheres; b++)
         heat->density[b] = heat->beams / (4 * FIBRAD_PI * scene->r[b] * scene->r[b]);
+    if (heat->clumps.some) correct_densities(heat);
 }
 
 /* Finds the patch of its sphere that each beam leaves. */
@@ -213,8 +255,7 @@ static void find_origins(fibrad_heat *heat) {
         double frame[9], n[3];
         fibrad_beam_frame(k, heat->config.directions, points, frame);
         for (uint32_t p = 0; p < points; p++) {
-            const double x = set.x[p], y = set.y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
-            for (int axis = 0; axis < 3; axis++) n[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+            normal_of_beam(&set, frame, p, n);
             heat->leave[k * points + p] = (uint16_t)fibrad_patch_of(n, heat->side);
         }
     }
@@ -222,6 +263,7 @@ static void find_origins(fibrad_heat *heat) {
 
 /* Prepares a problem for its scene. No beam has been followed. */
 static void forget_beams(fibrad_heat *heat) {
+    fibrad_heat_find_clumps(heat);
     fibrad_heat_divide_fours(heat);
     heat->patches += FIBRAD_HEAT_FOUR * heat->division.fours;
     number_patches(heat);
@@ -362,12 +404,13 @@ int fibrad_heat_move(fibrad_heat *heat, const fibrad_scene *scene) {
     for (uint32_t b = 0; b < heat->given_walls; b++)
         if (scene->slot[b] != heat->slot[b]) return FIBRAD_E_ARGUMENT;
     if (scene->container.openings != heat->openings) return FIBRAD_E_ARGUMENT;
+    if ((scene->clump != NULL) != (heat->clumps.leader != NULL)) return FIBRAD_E_ARGUMENT;
     if (!same_triangles(heat, scene)) return FIBRAD_E_ARGUMENT;
     fibrad_heat next = *heat;
     dimension(&next, &heat->config, scene);
     const uint64_t nodes = fibrad_heat_count_nodes(&next);
     if (nodes > heat->division.nodes_capacity || next.patches + FIBRAD_HEAT_FOUR * nodes > heat->patches_capacity ||
-        next.rays > heat->rays_capacity)
+        next.rays > heat->rays_capacity || fibrad_heat_count_caps(scene) > heat->clumps.room)
         return FIBRAD_E_SIZE;
     if (heat->solution.warm) drop_fine(heat), carry_over(heat, &next);
     *heat = next;

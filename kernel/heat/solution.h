@@ -57,9 +57,21 @@ static inline double fibrad_heat_absorbs(const fibrad_heat *heat, uint32_t body)
     return heat->sources.emissivity[body] * arrives;
 }
 
-/* Whether a body in contact has an emission that is an unknown beside its radiosities. */
+/* Whether a body in contact or in a clump has an emission that is an unknown beside its radiosities. */
 static inline bool fibrad_heat_is_joined(const fibrad_heat *heat, uint32_t body) {
-    return heat->contacts.joins && heat->contacts.kind[body] == FIBRAD_CONTACT_FREE;
+    return heat->contacts.joins && heat->contacts.kind[body] >= FIBRAD_CONTACT_FREE;
+}
+
+/* Sums values of nodes, one of each body, at the leaders of clumps: [bodies]. */
+static inline void fibrad_heat_sum_clumps(const fibrad_heat *heat, double *value) {
+    for (uint32_t b = 0; b < heat->spheres && heat->clumps.some; b++)
+        if (fibrad_heat_follows(heat, b)) value[heat->clumps.leader[b]] += value[b], value[b] = 0;
+}
+
+/* Gives the members of clumps the values of their leaders. */
+static inline void fibrad_heat_follow_leaders(const fibrad_heat *heat, double *value) {
+    for (uint32_t b = 0; b < heat->spheres && heat->clumps.some; b++)
+        if (fibrad_heat_follows(heat, b)) value[b] = value[heat->clumps.leader[b]];
 }
 
 /* What a body gains through contacts and its film. */
@@ -69,13 +81,14 @@ static inline double fibrad_heat_conducted(const fibrad_heat *heat, uint32_t bod
 
 /* The part of it that comes from the gas. */
 static inline double fibrad_heat_convected(const fibrad_heat *heat, uint32_t body) {
-    const fibrad_contacts *c = &heat->contacts;
-    return c->joins && c->film[body] > 0 ? c->film[body] * (c->gas[body] - c->temperature[body]) : 0;
+    return heat->contacts.joins && heat->film[body] > 0
+               ? heat->film[body] * (heat->gas[body] - heat->contacts.temperature[body])
+               : 0;
 }
 
 /* h R/k of the film of a sphere that conducts: h is the film over the area of the surface. */
 static inline double fibrad_heat_biot(const fibrad_heat *heat, uint32_t sphere) {
-    const double film = heat->contacts.joins ? heat->contacts.film[sphere] : 0;
+    const double film = heat->contacts.joins ? heat->film[sphere] : 0;
     return film > 0 ? film / (4 * FIBRAD_PI * heat->scene->r[sphere] * heat->sources.conductivity[sphere]) : 0;
 }
 

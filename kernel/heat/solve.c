@@ -42,6 +42,9 @@
  * not linear in E. So the search is one of conjugate gradients with exchange areas g of contacts that change from step
  * to step, and each direction is made conjugate to the last one with the present g.
  *
+ * The members of a clump are joined: they have one node, that of their leader. It has the sum of their balances, and
+ * their emissions follow it.
+ *
  * A stream of gas makes the system one that is not symmetric. During a search its temperatures are given. Where a
  * search would end they are found anew, with the radiation that now arrives, until they no longer change. */
 #include "heat/solution.h"
@@ -176,6 +179,12 @@ static double stiffness_of_joined(const fibrad_heat *heat, uint32_t b) {
     return heat->sources.storage[b] + heat->sources.emissivity[b] * fibrad_heat_sum(heat, b, heat->solution.area);
 }
 
+/* A clump has the balance of all its members. */
+static void sum_balances(fibrad_heat *heat) {
+    fibrad_heat_sum_clumps(heat, heat->contacts.stiff);
+    fibrad_heat_sum_clumps(heat, heat->contacts.supply);
+}
+
 /* The tolerance of temperatures that balance the radiation of one step: a Newton step that changes none by more is the
  * last one. */
 #define BALANCED_ROUGHLY 1e-3
@@ -191,6 +200,7 @@ static void set_arriving(fibrad_heat *heat) {
         c->stiff[b] = stiffness_of_joined(heat, b);
         c->supply[b] += heat->sources.given_power[b] + absorbable(heat, b);
     }
+    sum_balances(heat);
 }
 
 /* Finds the changes of the emissions of joined bodies: to those that balance the radiation which now arrives.
@@ -203,6 +213,7 @@ static void warm_joined(fibrad_heat *heat) {
         c->missing[b] = fibrad_heat_is_joined(heat, b) ? c->supply[b] - c->stiff[b] * heat->sources.emission[b] : 0;
     fibrad_contact_gains(c, c->temperature, c->missing);
     fibrad_contact_find(c, BALANCED_ROUGHLY);
+    fibrad_heat_follow_leaders(heat, c->temperature);
     for (uint32_t b = 0; b < heat->bodies; b++)
         c->warming[b] = fibrad_heat_is_joined(heat, b)
                             ? fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b]
@@ -218,7 +229,7 @@ static double find_residual(fibrad_heat *heat) {
                  : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
                  : fibrad_heat_is_free(heat, b)  ? free_residual(heat, b)
                                                  : given_residual(heat, b);
-    return slope;
+    return fibrad_max(0, slope); /* of joined bodies it may be below 0 by rounding */
 }
 
 /* Finds the emissions of the bodies of unknown temperature. */
@@ -310,6 +321,8 @@ static double scale_of_contacts(fibrad_heat *heat, double emission) {
         c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
         c->missing[b] = joined ? heat->sources.given_power[b] - heat->sources.storage[b] * emission : 0;
     }
+    fibrad_heat_sum_clumps(heat, c->stiff);
+    fibrad_heat_sum_clumps(heat, c->missing);
     fibrad_contact_gains(c, c->temperature, c->missing);
     fibrad_copy(c->load, c->missing, heat->bodies * sizeof *c->load);
     fibrad_contact_warm(c);
@@ -433,7 +446,9 @@ static void guess_joined(fibrad_heat *heat) {
         c->supply[b] =
             heat->sources.given_power[b] + (c->stiff[b] - heat->sources.storage[b]) * heat->sources.emission[b];
     }
+    sum_balances(heat);
     find_streaming(c, BALANCED_ROUGHLY);
+    fibrad_heat_follow_leaders(heat, c->temperature);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) continue;
         const double more = fibrad_contact_emission(c, c->temperature[b]) - heat->sources.emission[b];
@@ -495,12 +510,17 @@ static void set_balances(fibrad_heat *heat, double more, double area) {
         c->supply[b] += heat->sources.given_power[b] + heat->solution.power[b] + emits * emission;
         if (more != 0) c->supply[b] += more * (emits / area);
     }
+    c->more = more != 0 ? more / area : 0;
+    sum_balances(heat);
 }
 
 /* What a joined body gains by radiation at the temperature that was found. */
 static double radiated_by_joined(const fibrad_heat *heat, uint32_t b) {
     const fibrad_contacts *c = &heat->contacts;
-    const double emits = c->stiff[b] - heat->sources.storage[b];
+    const double emits = stiffness_of_joined(heat, b) - heat->sources.storage[b];
+    if (fibrad_heat_is_member(heat, b))
+        return heat->solution.power[b] +
+               emits * (extrapolated_emission(heat, b) + c->more - fibrad_contact_emission(c, c->temperature[b]));
     return c->supply[b] - c->gain[b] - heat->sources.given_power[b] -
            emits * fibrad_contact_emission(c, c->temperature[b]);
 }
@@ -512,6 +532,7 @@ static double balance_joined(fibrad_heat *heat, double more, double area) {
     double left = 0;
     set_balances(heat, more, area);
     find_streaming(c, FOUND);
+    fibrad_heat_follow_leaders(heat, c->temperature);
     fibrad_zero(c->gain, heat->bodies * sizeof *c->gain);
     fibrad_heat_add_offsets(heat, c->gain);
     for (uint32_t b = 0; b < heat->bodies; b++)
@@ -540,7 +561,7 @@ static void finish_contacts(fibrad_heat *heat) {
     const double left = balance_joined(heat, 0, 0);
     for (uint32_t b = 0; b < heat->bodies; b++) {
         if (!fibrad_heat_is_joined(heat, b)) weights += emitting(heat, b);
-        if (fibrad_heat_is_joined(heat, b)) joined += c->stiff[b] - heat->sources.storage[b];
+        if (fibrad_heat_is_joined(heat, b)) joined += stiffness_of_joined(heat, b) - heat->sources.storage[b];
         missed += heat->solution.power[b];
         powers += fibrad_abs(heat->solution.power[b]) + fibrad_abs(heat->sources.given_power[b]);
     }
@@ -554,7 +575,9 @@ static void finish_contacts(fibrad_heat *heat) {
             heat->solution.power[b] += left * (emitting(heat, b) / weights);
         }
     }
-    fibrad_contact_gains(c, c->temperature, c->gain);
+    fibrad_contacts own = *c;
+    own.node = heat->end, own.film = heat->film, own.gas = heat->gas;
+    fibrad_contact_gains(&own, c->temperature, c->gain);
 }
 
 /* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the

@@ -14,9 +14,14 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources) {
     *sources = (fibrad_heat_sources){.surroundings = __builtin_nan(""), .sigma = FIBRAD_STEFAN_BOLTZMANN};
 }
 
+/* Whether there are contacts or films. */
+static bool conducts_between(const fibrad_heat_sources *s) {
+    return s->contacts > 0 || s->film != NULL || s->wall_film != NULL;
+}
+
 /* Contacts pass on what is small beside the flows that they carry, so their balances do not close that far. */
-static double default_tolerance(const fibrad_heat *heat, bool unknown) {
-    if (heat->spheres <= FEW_SPHERES && !heat->contacts.joins) return FEW_TOLERANCE;
+static double default_tolerance(const fibrad_heat *heat, const fibrad_heat_sources *s, bool unknown) {
+    if (heat->spheres <= FEW_SPHERES && !conducts_between(s)) return FEW_TOLERANCE;
     return unknown ? FREE_TOLERANCE : HEAT_TOLERANCE;
 }
 
@@ -159,11 +164,11 @@ static int stream_why(const fibrad_heat *heat, const fibrad_stream *stream, fibr
     return valid ? FIBRAD_WHY_UNSAID : FIBRAD_WHY_STREAM;
 }
 
-/* Checks contacts and films of the sources, and keeps them in heat->checked. */
+/* Checks contacts and films of the sources, and keeps them in heat->checked. A clump is joined by its node. */
 static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
     fibrad_contacts *c = heat->checked;
     c->count = 0;
-    c->joins = fault->why == FIBRAD_WHY_UNSAID && (s->contacts > 0 || s->film != NULL || s->wall_film != NULL);
+    c->joins = fault->why == FIBRAD_WHY_UNSAID && (conducts_between(s) || heat->clumps.some);
     if (!c->joins) return;
     if (s->contacts > 0 && (s->contact_first == NULL || s->contact_second == NULL || s->conductance == NULL)) {
         fault->why = FIBRAD_WHY_MISSING;
@@ -177,9 +182,12 @@ static void check_contacts(const fibrad_heat *heat, const fibrad_heat_sources *s
     }
     c->first = s->contact_first, c->second = s->contact_second, c->conductance = s->conductance, c->count = s->contacts;
     c->sigma = s->sigma, c->zero = s->surroundings;
-    for (uint32_t b = 0; b < heat->spheres; b++) c->node[heat->order[b]] = b;
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        c->node[heat->order[b]] = fibrad_heat_is_member(heat, b) ? heat->clumps.leader[b] : b;
     for (uint32_t k = 0; k < heat->given_walls; k++) c->node[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
     fibrad_contact_mark(c);
+    for (uint32_t b = 0; b < heat->spheres; b++)
+        if (fibrad_heat_is_member(heat, b)) c->kind[b] = FIBRAD_CONTACT_GIVEN;
     check_films(heat, s, fault);
     if (s->stream != NULL && fault->why == FIBRAD_WHY_UNSAID) fault->why = stream_why(heat, s->stream, fault);
 }
@@ -255,15 +263,27 @@ static void check_components(const fibrad_heat *heat, const fibrad_heat_sources 
     }
 }
 
+/* The reason why the caller's sphere i is not valid. A clump has one temperature. */
+static int sphere_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t i) {
+    const radiator source = of_sphere(s, i);
+    const double conductivity = or_else(s->conductivity, i, __builtin_inf());
+    const uint32_t b = heat->scene->place[i];
+    const int why = source_why(&source, touches(heat, i));
+    if (why != FIBRAD_WHY_UNSAID) return why;
+    if (!(conductivity > 0)) return FIBRAD_WHY_CONDUCTIVITY;
+    if (!fibrad_heat_is_member(heat, b)) return FIBRAD_WHY_UNSAID;
+    if (fibrad_finite(conductivity)) return FIBRAD_WHY_CLUMP_SOLID;
+    const double leader = s->temperature[heat->order[heat->clumps.leader[b]]], own = source.temperature;
+    return is_given(own) != is_given(leader) || (is_given(own) && own != leader) ? FIBRAD_WHY_CLUMP_HEAT
+                                                                                 : FIBRAD_WHY_UNSAID;
+}
+
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *s, fibrad_fault *fault) {
     if (heat == NULL || s == NULL) return FIBRAD_E_ARGUMENT;
     fibrad_fault found = {heat->spheres, heat->spheres, UINT32_MAX, 0, sources_why(heat, s)};
     check_contacts(heat, s, &found);
     for (uint32_t i = 0; i < heat->spheres && found.why == FIBRAD_WHY_UNSAID; i++) {
-        const radiator source = of_sphere(s, i);
-        found.why = source_why(&source, touches(heat, i));
-        if (found.why == FIBRAD_WHY_UNSAID && s->conductivity != NULL && !(s->conductivity[i] > 0))
-            found.why = FIBRAD_WHY_CONDUCTIVITY;
+        found.why = sphere_why(heat, s, i);
         if (found.why != FIBRAD_WHY_UNSAID) found.first = found.second = i;
     }
     for (uint32_t b = 0; b < heat->given_walls && found.why == FIBRAD_WHY_UNSAID; b++) {
@@ -348,7 +368,7 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     return range[0] <= range[1] ? range[0] + 0.5 * (range[1] - range[0]) : 0;
 }
 
-/* Whether a body has contacts in the solution that begins. */
+/* Whether a body has contacts, or is in a clump, in the solution that begins. */
 static bool in_contact(const fibrad_heat *heat, uint32_t b) {
     return heat->contacts.joins && heat->contacts.kind[b] != FIBRAD_CONTACT_NONE;
 }
@@ -378,7 +398,9 @@ static void set_emission(fibrad_heat *heat, uint32_t b, double eps, double emiss
 static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t b,
                      const radiator *source) {
     const bool dark = source->emissivity == 0, touching = in_contact(heat, b);
-    const double emission = first_emission(heat, s, middle, b, source);
+    const bool follows = fibrad_heat_follows(heat, b);
+    const double emission =
+        follows ? heat->sources.emission[heat->clumps.leader[b]] : first_emission(heat, s, middle, b, source);
     if (dark && touching) heat->sources.emission[b] = middle; /* its radiosities do not follow its own emission */
     set_emission(heat, b, source->emissivity, dark ? middle : emission);
     heat->sources.emission[b] = emission;
@@ -387,7 +409,7 @@ static void set_body(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     heat->sources.storage[b] = source->storage;
     heat->sources.given_power[b] =
         source->power + (source->storage > 0 ? source->storage * emission_of(s, source->reference) : 0);
-    if (touching) heat->contacts.kind[b] = FIBRAD_CONTACT_FREE;
+    if (touching) heat->contacts.kind[b] = follows ? FIBRAD_CONTACT_FOLLOWS : FIBRAD_CONTACT_FREE;
 }
 
 /* Adds `times` emissivity times excess to the radiosities of a mesh. */
@@ -463,9 +485,25 @@ static void begin_stream(fibrad_heat *heat, const fibrad_stream *stream) {
     for (uint32_t k = 0; k < stream->slices; k++)
         if (!(stream->gas[k] > 0)) stream->gas[k] = stream->inlet;
     for (uint32_t b = 0; b < heat->bodies; b++)
-        c->slice[b] = b < heat->spheres && c->film[b] > 0 ? stream->slice[heat->order[b]] : UINT32_MAX;
+        c->slice[b] = b < heat->spheres && heat->film[b] > 0 ? stream->slice[heat->order[b]] : UINT32_MAX;
     for (uint32_t b = 0; b < heat->spheres; b++)
-        if (c->slice[b] != UINT32_MAX) c->gas[b] = stream->gas[c->slice[b]];
+        if (c->slice[b] != UINT32_MAX) heat->gas[b] = stream->gas[c->slice[b]];
+}
+
+/* Puts the films of the members of a clump together, at the mean temperature of their gas. */
+static void join_films(fibrad_heat *heat) {
+    fibrad_contacts *c = &heat->contacts;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double film = heat->film[b];
+        const uint32_t node = fibrad_heat_follows(heat, b) ? heat->clumps.leader[b] : b;
+        c->film[b] = 0, c->gas[b] = heat->gas[b];
+        if (!(film > 0)) continue;
+        if (c->film[node] > 0)
+            c->gas[node] += film / (c->film[node] + film) * (heat->gas[b] - c->gas[node]);
+        else
+            c->gas[node] = heat->gas[b];
+        c->film[node] += film;
+    }
 }
 
 /* Takes over the contacts and films that were checked. */
@@ -477,12 +515,17 @@ static void begin_contacts(fibrad_heat *heat, const fibrad_heat_sources *s) {
     c->sigma = checked->sigma, c->zero = checked->zero, c->anchored = checked->anchored;
     fibrad_copy(c->node, checked->node, (heat->spheres + heat->given_walls) * sizeof *c->node);
     fibrad_copy(c->kind, checked->kind, heat->bodies);
-    fibrad_zero(c->film, heat->bodies * sizeof *c->film);
+    for (uint32_t b = 0; b < heat->spheres; b++) heat->end[heat->order[b]] = b;
+    for (uint32_t k = 0; k < heat->given_walls; k++)
+        heat->end[heat->spheres + k] = fibrad_heat_body(heat, heat->slot[k]);
+    fibrad_zero(heat->film, heat->bodies * sizeof *heat->film);
     for (uint32_t k = 0; k < heat->spheres + heat->given_walls; k++) {
         const film_data film = film_of(heat, s, k);
-        c->film[c->node[k]] = film.conductance, c->gas[c->node[k]] = film.gas;
+        heat->film[heat->end[k]] = film.conductance, heat->gas[heat->end[k]] = film.gas;
     }
     begin_stream(heat, s->stream);
+    c->own_film = heat->film, c->own_gas = heat->gas, c->leader = heat->clumps.some ? heat->clumps.leader : NULL;
+    if (heat->clumps.some) join_films(heat);
 }
 
 /* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */
@@ -520,7 +563,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;
     heat->solution.group = FIBRAD_HEAT_FOUR;
-    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, unknown);
+    heat->sources.tolerance = sources->tolerance > 0 ? sources->tolerance : default_tolerance(heat, sources, unknown);
     heat->sources.settled = heat->sources.tolerance;
     if (unknown)
         heat->sources.settled =

@@ -10,8 +10,11 @@ int fibrad_light_check(const fibrad_scene *scene, const fibrad_light *light, fib
         const uint32_t before = fibrad_light_obstacle(scene, light);
         if (before != FIBRAD_NONE) found.first = found.second = before, found.why = FIBRAD_WHY_FOOTPRINT;
     }
+    if (scene->facts.clumps > 0) found.why = FIBRAD_WHY_CLUMP_LIGHT; /* discs do not tell on which member light falls */
     if (fault != NULL) *fault = found;
-    return found.why == FIBRAD_WHY_UNSAID ? FIBRAD_OK : FIBRAD_E_ARGUMENT;
+    return found.why == FIBRAD_WHY_UNSAID        ? FIBRAD_OK
+           : found.why == FIBRAD_WHY_CLUMP_LIGHT ? FIBRAD_E_UNSUPPORTED
+                                                 : FIBRAD_E_ARGUMENT;
 }
 
 /* Gives the polygons of windows the room that is left after `extra` bytes of scratch. */

@@ -23,6 +23,8 @@ struct hit_window {
     uint32_t point[HIT_POINTS], disc[HIT_POINTS];
     uint32_t count;
     uint64_t behind; /* bits of points where beams leave their own sphere behind a wall */
+    uint64_t inside; /* the same inside another member of its clump; there are no such beams */
+    uint64_t wrong;  /* the same of points whose first disc is not what the beam meets, in a clump */
 };
 
 /* Finds the patch numbers, 0 to 6 side^2 - 1, of the normals of all points. */
@@ -99,16 +101,34 @@ static uint64_t points_behind(const fibrad_workspace *work, const double frame[9
     return behind;
 }
 
-/* Takes points away from the disc that hides them, and counts them as open, so that walls get them. */
-static void give_to_walls(fibrad_workspace *work, uint32_t disc, uint32_t k, uint64_t bits, uint64_t *seen) {
-    *seen |= bits;
+/* Which of the given points of a sphere lie inside another member of its clump. side: as for points_behind. */
+static uint64_t points_inside(const fibrad_heat *heat, const double frame[9], const float *x, const float *y,
+                              uint64_t points, uint32_t place, const double disc[3], double side) {
+    uint64_t inside = 0;
+    for (size_t k = heat->clumps.first_cap[place]; k < heat->clumps.first_cap[place + 1]; k++) {
+        const fibrad_heat_cap *cap = &heat->clumps.cap[k];
+        const double a = fibrad_dot(cap->at, frame), b = fibrad_dot(cap->at, frame + 3),
+                     c = side * fibrad_dot(cap->at, frame + 6);
+        for (uint64_t left = points & ~inside; left != 0; left &= left - 1) {
+            const uint32_t p = (uint32_t)__builtin_ctzll(left);
+            const double u = (x[p] - disc[0]) / disc[2], v = (y[p] - disc[1]) / disc[2];
+            const double up = fibrad_sqrt(fibrad_max(0, 1 - (u * u + v * v)));
+            if (a * u + b * v + c * up > cap->beyond) inside |= left & (0 - left);
+        }
+    }
+    return inside;
+}
+
+/* Takes points away from the disc that hides them. */
+static void take_from_disc(fibrad_workspace *work, uint32_t disc, uint32_t k, uint64_t bits) {
     for (; bits != 0; bits &= bits - 1)
         fibrad_entries_add(&work->entries, work->near.entry[work->disc.near[disc]], k, -1);
 }
 
 /* Lists the points of a word whose beams are kept, each with the first disc that covers it. Kept are the points in
  * `kept`, at least one point of each sphere that this window sees for the first time (its entry is `known` or later),
- * and all points on spheres with fine patches. Points behind a wall count as open. */
+ * and all points on spheres with fine patches. Points behind a wall count as open. Discs are in the order of their
+ * centres. On a clump the first disc may be a part of a sphere that lies inside another one. */
 static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                            fibrad_points *points, uint32_t window, uint32_t word, uint64_t kept, uint32_t known,
                            struct hit_window *p) {
@@ -129,14 +149,21 @@ static void find_hit_discs(const fibrad_heat *heat, fibrad_workspace *work, cons
         const double disc[] = {work->disc.u[k], work->disc.v[k], r};
         const uint64_t behind =
             (hidden & p->behind) | points_behind(work, frame, x, y, hidden, fibrad_work_sphere(work, k), disc, -1);
-        if (behind != 0) give_to_walls(work, k, window, behind, &points->seen[word]);
-        hidden &= ~behind;
+        uint64_t lost = behind;
+        if (heat->clumps.some) {
+            const uint64_t wrong =
+                points_inside(heat, frame, x, y, hidden & ~(behind | p->inside), fibrad_work_sphere(work, k), disc, -1);
+            p->wrong |= wrong, lost |= wrong | (hidden & p->inside);
+        }
+        if (lost != 0) take_from_disc(work, k, window, lost);
+        points->seen[word] |= behind;
+        hidden &= ~lost;
         uint64_t bits = heat->division.root[fibrad_work_sphere(work, k)] == FIBRAD_NONE ? hidden & kept : hidden;
         if (bits == 0 && work->near.entry[work->disc.near[k]] >= known) bits = hidden & (0 - hidden);
         for (; bits != 0; bits &= bits - 1)
             p->point[p->count] = (uint32_t)__builtin_ctzll(bits), p->disc[p->count++] = k;
     }
-    points->seen[word] |= p->behind;
+    points->seen[word] = (points->seen[word] | p->behind) & ~p->inside;
 }
 
 /* Finds the normals where the beams of points x, y meet their spheres. */
@@ -209,23 +236,26 @@ static uint32_t escape_patch(const fibrad_heat *heat, const fibrad_workspace *wo
 /* Keeps the beams of a word of window k that meet spheres. Returns the end of the beams that are kept. */
 static fibrad_heat_beam *keep_hits(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
                                    fibrad_points *points, uint32_t k, uint32_t word, uint64_t kept, uint32_t known,
-                                   fibrad_heat_beam *beam) {
-    struct hit_window window;
+                                   struct hit_window *window, fibrad_heat_beam *beam) {
+    static const double disc[] = {0, 0, 1};
     uint16_t patch[HIT_POINTS];
     const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
     const float *x = points->set.x + HIT_POINTS * word, *y = points->set.y + HIT_POINTS * word;
-    window.behind = points_behind(work, frame, x, y, UINT64_MAX, work->place, (const double[]){0, 0, 1}, 1);
-    find_hit_discs(heat, work, frame, points, k, word, kept, known, &window);
-    find_hit_normals(work, x, y, &window);
-    number_patches_of(&window, frame, heat->side, patch);
-    for (uint32_t p = 0; p < window.count; p++) {
-        const uint32_t sphere = fibrad_work_sphere(work, window.disc[p]), from = leave[window.point[p]];
-        const uint32_t entry = work->near.entry[work->disc.near[window.disc[p]]];
+    window->behind = points_behind(work, frame, x, y, UINT64_MAX, work->place, disc, 1);
+    window->inside = heat->clumps.some ? points_inside(heat, frame, x, y, UINT64_MAX, work->place, disc, 1) : 0;
+    window->wrong = 0;
+    find_hit_discs(heat, work, frame, points, k, word, kept, known, window);
+    find_hit_normals(work, x, y, window);
+    number_patches_of(window, frame, heat->side, patch);
+    for (uint32_t p = 0; p < window->count; p++) {
+        const uint32_t sphere = fibrad_work_sphere(work, window->disc[p]), from = leave[window->point[p]];
+        const uint32_t entry = work->near.entry[work->disc.near[window->disc[p]]];
         const bool left_out = fibrad_heat_is_divided(heat, work->place, from / FIBRAD_HEAT_FOUR);
         uint32_t fine = FIBRAD_NONE;
         if (heat->division.root[sphere] != FIBRAD_NONE)
             fine = fibrad_heat_fine_number(
-                heat, sphere, fibrad_heat_patch_on_face(heat, sphere, patch[p], (double[]){window.x[p], window.y[p]}));
+                heat, sphere,
+                fibrad_heat_patch_on_face(heat, sphere, patch[p], (double[]){window->x[p], window->y[p]}));
         if (left_out || fine != FIBRAD_NONE) fibrad_entries_add(&work->entries, entry, k, -1);
         if (left_out) continue;
         *beam++ = fine != FIBRAD_NONE ? fine_beam(heat, work, k, (uint16_t)from, fine)
@@ -252,9 +282,10 @@ static fibrad_heat_beam *keep_other(const fibrad_heat *heat, fibrad_workspace *w
 
 /* Keeps all beams of a word that meet triangles. */
 static fibrad_heat_beam *keep_meshed(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
-                                     const fibrad_points *points, uint32_t k, uint32_t word, fibrad_heat_beam *beam) {
+                                     const fibrad_points *points, uint32_t k, uint32_t word, uint64_t inside,
+                                     fibrad_heat_beam *beam) {
     const uint16_t *leave = heat->leave + (size_t)k * heat->config.points + HIT_POINTS * word;
-    for (uint64_t bits = meshed_points(work, word) & ~points->seen[word]; bits != 0; bits &= bits - 1) {
+    for (uint64_t bits = meshed_points(work, word) & ~(points->seen[word] | inside); bits != 0; bits &= bits - 1) {
         const uint32_t p = (uint32_t)__builtin_ctzll(bits), side = work->met->side[HIT_POINTS * word + p];
         double at[3];
         if (fibrad_heat_is_divided(heat, work->place, leave[p] / FIBRAD_HEAT_FOUR)) continue;
@@ -281,39 +312,6 @@ static fibrad_heat_beam *keep_escapes(const fibrad_heat *heat, fibrad_workspace 
         beam = keep_other(heat, work, k, leave[p], patch, (kept >> p & 1) != 0, beam);
     }
     return beam;
-}
-
-static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t place) {
-    fibrad_heat_beam *const first = work->extra, *beam = first;
-    fibrad_points points = {.count = heat->config.points};
-    fibrad_disc_points_get(points.count, &points.set);
-    work->areas.overflow = false;
-    work->windows = heat->config.directions;
-    work->extra_owner = 0;
-    fibrad_work_begin(work, heat->scene, place, 0, FIBRAD_BEAM_STRIDE);
-    /* a turn by chance: the spheres of a lattice, which are all alike, must not all keep the same half */
-    const uint32_t turn = (uint32_t)(fibrad_mix(fibrad_scene_rank(heat->scene, place)) & 1);
-    for (uint32_t k = 0; k < heat->config.directions; k++) {
-        /* spheres that triangles have hidden so far have not been seen, so that each window may see them for the first
-         * time */
-        const uint32_t known = heat->triangles > 0 ? 0 : work->entries.length;
-        double frame[9];
-        fibrad_beam_frame(k, heat->config.directions, points.count, frame);
-        work->entries.end = k == 0 || k + 1 == heat->config.directions;
-        LANED(fibrad_beam_window)(work, frame, &points, k);
-        if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
-        for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
-            const uint64_t kept =
-                kept_points(turn + k + word, heat->division.root[place] == FIBRAD_NONE ? heat->thin : 1);
-            beam = keep_hits(heat, work, frame, &points, k, word, kept, known, beam);
-            beam = keep_meshed(heat, work, frame, &points, k, word, beam);
-            beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);
-        }
-    }
-    if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
-    const uint32_t count = fibrad_heat_free_beams(heat, work, (uint32_t)(beam - first));
-    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
-    return fibrad_heat_keep(heat, work, place, count);
 }
 
 /* The area that a ray stands for that ends in a row. 0: it does not count. */
@@ -386,6 +384,8 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
     else
         LANED(fibrad_trace_point)(scene, NULL, ray->at, ray->direction, FIBRAD_NO_SIDE, &hit);
     if (hit.sphere != FIBRAD_NONE && !sphere && hit.distance == 0 && scene->container.cuts) return true;
+    if (hit.sphere != FIBRAD_NONE && sphere && hit.distance == 0 && fibrad_one_clump(scene, body, hit.sphere))
+        return true;
     *next = beam + 1;
     if (hit.sphere != FIBRAD_NONE) {
         const uint32_t patch = fibrad_heat_patch_at(heat, hit.sphere, hit.normal);
@@ -408,6 +408,61 @@ static bool keep_fine_ray(const fibrad_heat *heat, fibrad_workspace *work, uint3
     else
         work->back = fibrad_side_number(&scene->mesh, hit.side);
     return to != FIBRAD_NONE;
+}
+
+/* Follows the beams of window k whose first disc is wrong, as rays. False: as for keep_fine_ray. */
+static bool keep_wrong(const fibrad_heat *heat, fibrad_workspace *work, const double frame[9],
+                       const fibrad_points *points, uint32_t k, uint32_t word, uint64_t wrong,
+                       fibrad_heat_beam **next) {
+    const uint16_t *leave = heat->leave + (size_t)k * points->count + HIT_POINTS * word;
+    const double r = work->unit;
+    for (; wrong != 0; wrong &= wrong - 1) {
+        const uint32_t p = HIT_POINTS * word + (uint32_t)__builtin_ctzll(wrong), patch = leave[p - HIT_POINTS * word];
+        const double x = points->set.x[p], y = points->set.y[p], up = fibrad_sqrt(fibrad_max(0, 1 - (x * x + y * y)));
+        fibrad_heat_fine_rays ray = {.patch = patch, .k = k};
+        if (fibrad_heat_is_divided(heat, work->place, patch / FIBRAD_HEAT_FOUR)) continue;
+        for (int axis = 0; axis < 3; axis++) {
+            ray.normal[axis] = x * frame[axis] + y * frame[3 + axis] + up * frame[6 + axis];
+            ray.at[axis] = r * ray.normal[axis], ray.direction[axis] = frame[6 + axis];
+        }
+        if (!keep_fine_ray(heat, work, work->place, &ray, next)) return false;
+    }
+    return true;
+}
+
+static int follow_beams_of(fibrad_heat *heat, fibrad_workspace *work, uint32_t place) {
+    fibrad_heat_beam *const first = work->extra, *beam = first;
+    fibrad_points points = {.count = heat->config.points};
+    fibrad_disc_points_get(points.count, &points.set);
+    work->areas.overflow = false;
+    work->windows = heat->config.directions;
+    work->extra_owner = 0;
+    fibrad_work_begin(work, heat->scene, place, 0, FIBRAD_BEAM_STRIDE);
+    /* a turn by chance: the spheres of a lattice, which are all alike, must not all keep the same half */
+    const uint32_t turn = (uint32_t)(fibrad_mix(fibrad_scene_rank(heat->scene, place)) & 1);
+    for (uint32_t k = 0; k < heat->config.directions; k++) {
+        /* spheres that triangles or clumps have hidden so far have not been seen, so that each window may see them for
+         * the first time */
+        const uint32_t known = heat->triangles > 0 || heat->clumps.some ? 0 : work->entries.length;
+        struct hit_window window;
+        double frame[9];
+        fibrad_beam_frame(k, heat->config.directions, points.count, frame);
+        work->entries.end = k == 0 || k + 1 == heat->config.directions;
+        LANED(fibrad_beam_window)(work, frame, &points, k);
+        if (work->disc.count > work->disc.capacity) return fibrad_work_discs_missed(work);
+        for (uint32_t word = 0; word < points.count / HIT_POINTS; word++) {
+            const uint64_t kept =
+                kept_points(turn + k + word, heat->division.root[place] == FIBRAD_NONE ? heat->thin : 1);
+            beam = keep_hits(heat, work, frame, &points, k, word, kept, known, &window, beam);
+            beam = keep_meshed(heat, work, frame, &points, k, word, window.inside, beam);
+            beam = keep_escapes(heat, work, frame, &points, k, word, kept, beam);
+            if (!keep_wrong(heat, work, frame, &points, k, word, window.wrong, &beam)) return FIBRAD_E_BACK;
+        }
+    }
+    if (work->back != UINT32_MAX) return FIBRAD_E_BACK;
+    const uint32_t count = fibrad_heat_free_beams(heat, work, (uint32_t)(beam - first));
+    if (work->entries.missed > 0) return fibrad_work_entries_missed(work);
+    return fibrad_heat_keep(heat, work, place, count);
 }
 
 /* Follows the rays of a row of fine fours. */

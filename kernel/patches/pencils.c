@@ -260,9 +260,9 @@ struct free_share {
 
 static double beams_in_parts(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
 
-/* Sums up a row. Spheres with fine patches have no exact factor, and neither have spheres for whose beams there is no
- * room. */
-static struct free_share share_of_free(const fibrad_heat *heat, fibrad_entries *entries) {
+/* Sums up a row. Spheres with fine patches have no exact factor, and neither have members of the same clump, nor
+ * spheres for whose beams there is no room. */
+static struct free_share share_of_free(const fibrad_heat *heat, uint32_t place, fibrad_entries *entries) {
     struct free_share share = {.exact = 0};
     uint32_t more = 0;
     for (uint32_t k = 0; k < entries->length; k++) {
@@ -270,7 +270,8 @@ static struct free_share share_of_free(const fibrad_heat *heat, fibrad_entries *
         const bool unmet = beams_in_parts(part) == 0;
         for (int p = 0; p < 4 && entries->sphere[k] >= heat->rows; p++) share.others[p] += part[p];
         if (!(entries->exact[k] > 0)) continue;
-        if (heat->division.root[entries->sphere[k]] != FIBRAD_NONE || (unmet && ++more > FREE_BEAMS)) {
+        const bool inside = fibrad_one_clump(heat->scene, place, entries->sphere[k]);
+        if (inside || heat->division.root[entries->sphere[k]] != FIBRAD_NONE || (unmet && ++more > FREE_BEAMS)) {
             entries->exact[k] = 0, share.left_out = share.left_out || unmet;
             continue;
         }
@@ -303,7 +304,7 @@ uint32_t fibrad_heat_free_beams(fibrad_heat *heat, fibrad_workspace *work, uint3
     heat->pencils.row[work->place].complete = false;
     if (heat->division.root[work->place] != FIBRAD_NONE) return count;
     const fibrad_free_pairs pairs = fibrad_free_pairs_find(work, 1 / all, false);
-    const struct free_share share = share_of_free(heat, entries);
+    const struct free_share share = share_of_free(heat, work->place, entries);
     const double exact = (double)share.exact * 0x1p-60 * all, others = beams_in_parts(share.others);
     const double left = others + (beams_in_parts(share.seen) - exact);
     heat->pencils.row[work->place].complete = pairs.told && !share.left_out && (share.exact == 0 || left > 0);

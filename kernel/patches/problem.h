@@ -207,6 +207,20 @@ typedef struct fibrad_heat_spots {
     double *entering;             /* [patches], power that enters at flow; NULL: contacts act on means of surfaces */
 } fibrad_heat_spots;
 
+/* A part of a sphere that lies inside another member of its clump: where normals n have n.at > beyond. */
+typedef struct fibrad_heat_cap {
+    double at[3], beyond;
+} fibrad_heat_cap;
+
+/* The clumps of the scene (clump_caps.c). A clump of one sphere is none. */
+typedef struct fibrad_heat_clumps {
+    bool some;            /* there are clumps; otherwise the arrays are not used */
+    uint32_t *leader;     /* [spheres], first body of the clump; FIBRAD_NONE: the sphere is alone */
+    size_t *first_cap;    /* [spheres + 1] */
+    fibrad_heat_cap *cap; /* [room] */
+    size_t room;
+} fibrad_heat_clumps;
+
 /* From which errors are estimated. */
 typedef struct fibrad_heat_samples {
     double *halves;         /* [bodies], power by even directions minus power by odd directions */
@@ -260,7 +274,10 @@ struct fibrad_heat {
     fibrad_heat_given sources;
     fibrad_heat_solution solution;
     fibrad_heat_samples samples;
-    fibrad_contacts contacts; /* of the solution; nodes are bodies; count 0: none */
+    fibrad_contacts contacts; /* of the solution; nodes are bodies, of a clump its leader; count 0: none */
+    uint32_t *end;            /* body by the caller's number of a sphere or wall; without clumps contacts.node */
+    double *film, *gas;       /* [bodies], as in contacts, but of each member of a clump; without clumps these */
+    fibrad_heat_clumps clumps;
     fibrad_heat_spots spots;
     fibrad_contacts *checked; /* of the sources that were checked last: count, node, kind and anchored */
     uint32_t *checked_node;   /* arrays of `checked` */
@@ -278,6 +295,24 @@ static inline uint32_t fibrad_heat_beyond(const fibrad_heat *heat, uint32_t wall
 /* Whether the temperature of a body is to be found. */
 static inline bool fibrad_heat_is_free(const fibrad_heat *heat, uint32_t body) {
     return heat->sources.storage[body] >= 0;
+}
+
+/* Whether a point of a sphere, by its normal, lies inside another member of its clump. */
+static inline bool fibrad_heat_is_hidden(const fibrad_heat *heat, uint32_t sphere, const double n[3]) {
+    bool hidden = false;
+    for (size_t k = heat->clumps.first_cap[sphere]; k < heat->clumps.first_cap[sphere + 1] && !hidden; k++) {
+        const fibrad_heat_cap *cap = &heat->clumps.cap[k];
+        hidden = n[0] * cap->at[0] + n[1] * cap->at[1] + n[2] * cap->at[2] > cap->beyond;
+    }
+    return hidden;
+}
+
+/* Whether a body is a member of a clump, and whether it takes its temperature from the clump's leader. */
+static inline bool fibrad_heat_is_member(const fibrad_heat *heat, uint32_t body) {
+    return heat->clumps.some && body < heat->spheres && heat->clumps.leader[body] != FIBRAD_NONE;
+}
+static inline bool fibrad_heat_follows(const fibrad_heat *heat, uint32_t body) {
+    return fibrad_heat_is_member(heat, body) && heat->clumps.leader[body] != body;
 }
 
 /* The sum of values over the patches of a body. */

@@ -249,7 +249,8 @@ static void divide_sphere(fibrad_heat *heat, uint32_t body) {
                                             scene->z[j] + walk.shift[2] - centre[2]},
                                            0};
                 near.height = fibrad_sqrt(fibrad_dot(near.centre, near.centre)) - r;
-                if (scene->r[j] >= r || !asks_for_fine(heat, body, scene->r[j], &near)) continue;
+                if (scene->r[j] >= r || fibrad_one_clump(scene, body, j)) continue;
+                if (!asks_for_fine(heat, body, scene->r[j], &near)) continue;
                 begin_body(heat, body, &begun);
                 for (uint32_t own = 0; own < fours_of(heat, body); own++) divide_four(heat, body, own, &near);
             }

@@ -46,7 +46,8 @@ static void intersect_sphere(const struct trace_ray *ray, uint32_t j, const doub
     double square = r * r - fibrad_dot(across, across);
     if (!(square > 0)) return;
     double root = fibrad_sqrt(square), distance = fibrad_max(0, along - root);
-    bool ahead = ray->place != FIBRAD_NONE ? depth > 0 : along + root > 0;
+    const bool by_centre = ray->place != FIBRAD_NONE && !fibrad_one_clump(ray->scene, ray->place, j);
+    const bool ahead = by_centre ? depth > 0 : along + root > 0;
     if (!ahead || !trace_before(ray->scene, distance, depth, j, c, first)) return;
     *first = (struct trace_first){distance, depth, {c[0], c[1], c[2]}, {across[0], across[1], across[2]}, root, j};
 }

@@ -4,7 +4,8 @@
  * Other members hide caps of a sphere. The edge of all caps together is made of arcs of their circles. By Green's
  * theorem the hidden area is a sum over these arcs: of the sectors that they cut from their caps, and of the triangles
  * between their ends and any fixed point P, less those between their ends and the middle of the cap. The sum is known
- * up to whole spheres. docs/methods.md section 5. */
+ * up to whole spheres. By Stokes' theorem the sum of the normals n of the hidden part is half the integral of n x dn
+ * over its edge. With these sums Gauss' theorem tells the volume of a clump. docs/methods.md section 5. */
 #include "scene/clumps.h"
 #include "base/elementary.h"
 #include "base/sort.h"
@@ -17,6 +18,8 @@
 
 void fibrad_clumps_layout(fibrad_arena *arena, uint32_t n, fibrad_clumps *clumps) {
     clumps->exposed = fibrad_arena_take(arena, n, sizeof *clumps->exposed);
+    clumps->volume = fibrad_arena_take(arena, n, sizeof *clumps->volume);
+    clumps->outer = fibrad_arena_take(arena, n, sizeof *clumps->outer);
     clumps->link = fibrad_arena_take(arena, n, sizeof *clumps->link);
     clumps->cap = fibrad_arena_take(arena, n, sizeof *clumps->cap);
     clumps->hidden = fibrad_arena_take(arena, n, sizeof *clumps->hidden);
@@ -120,6 +123,19 @@ static double share_of_arc(const fibrad_cap *cap, double from, double to) {
     return cap->share * ((to - from) / (2 * FIBRAD_PI)) + area / (4 * FIBRAD_PI);
 }
 
+/* Takes from `outer` the normals that the same arc bounds. */
+static void take_normals(const fibrad_cap *cap, double from, double to, double outer[3]) {
+    double u[3], v[3], sine[2], cosine[2], radius, height;
+    fibrad_frame_about(cap->axis, u, v);
+    sincos_of(cap->angle, &radius, &height);
+    sincos_of(from, &sine[0], &cosine[0]);
+    sincos_of(to, &sine[1], &cosine[1]);
+    for (int k = 0; k < 3; k++)
+        outer[k] -= radius / 2 *
+                    (height * ((cosine[1] - cosine[0]) * v[k] - (sine[1] - sine[0]) * u[k]) +
+                     radius * (to - from) * cap->axis[k]);
+}
+
 /* Adds a cap to a list, unless it lies within another one. Takes out those that lie within it. A list of one cap with a
  * share of 1: all is hidden. Returns the new number. */
 static uint32_t add_cap(fibrad_cap *list, uint32_t count, const fibrad_cap *cap) {
@@ -139,10 +155,12 @@ static uint32_t add_cap(fibrad_cap *list, uint32_t count, const fibrad_cap *cap)
     return to + 1;
 }
 
-/* The hidden part of a sphere under caps of which none lies within another. */
-static double hidden_part(const fibrad_cap *cap, uint32_t count, double (*hidden)[2]) {
+/* The hidden part of a sphere under caps of which none lies within another. outer: out: the sum of the normals of the
+ * other part, times their areas. */
+static double hidden_part(const fibrad_cap *cap, uint32_t count, double (*hidden)[2], double outer[3]) {
     double part = 0, sum = 0, most = 0;
     bool edge = false;
+    outer[0] = outer[1] = outer[2] = 0;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t cuts = 0;
         double reach = -__builtin_inf();
@@ -155,9 +173,11 @@ static double hidden_part(const fibrad_cap *cap, uint32_t count, double (*hidden
             fibrad_copy(hidden[at], by, sizeof by);
             reach = fibrad_max(reach, by[1] - 2 * FIBRAD_PI);
         }
-        if (cuts == 0) part += cap[k].share, edge = true;
+        if (cuts == 0) part += cap[k].share, edge = true, take_normals(&cap[k], 0, 2 * FIBRAD_PI, outer);
         for (uint32_t at = 0; at < cuts; at++) {
-            if (hidden[at][0] > reach) part += share_of_arc(&cap[k], reach, hidden[at][0]), edge = true;
+            if (hidden[at][0] > reach)
+                part += share_of_arc(&cap[k], reach, hidden[at][0]), edge = true,
+                                                                     take_normals(&cap[k], reach, hidden[at][0], outer);
             reach = fibrad_max(reach, hidden[at][1]);
         }
     }
@@ -229,10 +249,36 @@ static bool expose(fibrad_scene *scene, uint32_t i) {
             for (uint32_t j = walk.begin; j < walk.end; j++)
                 if (scene->clump[j] == scene->clump[i] && (j != i || walk.image)) take_member(&search, j, &walk);
     }
-    const double part = 1 - hidden_part(scene->clumps.cap, search.caps, scene->clumps.hidden);
+    const double part = 1 - hidden_part(scene->clumps.cap, search.caps, scene->clumps.hidden, scene->clumps.outer[i]);
     scene->clumps.exposed[i] = 4 * FIBRAD_PI * part * (r * r);
     if (part == 0 && scene->facts.covered++ == 0) scene->facts.covered_sphere = scene->order[i];
     return search.apart;
+}
+
+/* What the exposed part of the sphere at a place adds to the volume of its clump by Gauss' theorem. */
+static double volume_by_surface(const fibrad_scene *scene, uint32_t i) {
+    const double r = scene->r[i], at[3] = {scene->x[i], scene->y[i], scene->z[i]};
+    int32_t periods[3] = {0, 0, 0};
+    const uint32_t root = root_of(scene->clumps.link, i, periods);
+    const double from[3] = {scene->x[root], scene->y[root], scene->z[root]};
+    double sum = r * scene->clumps.exposed[i];
+    for (int axis = 0; axis < 3 && sum > 0; axis++)
+        sum += (at[axis] - from[axis] - periods[axis] * scene->period[axis]) * scene->clumps.outer[i][axis] * (r * r);
+    return sum / 3;
+}
+
+/* Shares out the volumes of clumps by the volumes of their members. key: clumps and members, sorted. */
+static void share_volumes(fibrad_scene *scene, const uint64_t *key) {
+    const uint32_t n = scene->facts.spheres;
+    for (uint32_t k = 0, end; k < n; k = end) {
+        double volume = 0, spheres = 0;
+        for (end = k; end < n && key[end] >> 32 == key[k] >> 32 && (end == k || key[k] >> 32 > 0); end++) {
+            const uint32_t i = scene->place[(uint32_t)key[end]];
+            scene->clumps.volume[i] = scene->r[i] * (scene->r[i] * scene->r[i]);
+            volume += volume_by_surface(scene, i), spheres += scene->clumps.volume[i];
+        }
+        for (uint32_t m = k; m < end; m++) scene->clumps.volume[scene->place[(uint32_t)key[m]]] *= volume / spheres;
+    }
 }
 
 /* Counts clumps, and those in parts that do not touch. */
@@ -245,6 +291,7 @@ static void count_clumps(fibrad_scene *scene) {
         key[i] = clump << 32 | i, largest = clump > largest ? clump : largest;
     }
     key = fibrad_sort_keys(key, key + n, n, 32, largest);
+    share_volumes(scene, key);
     bool whole = true;
     for (uint32_t k = 0, first = 0, root = 0; k < n; k++) {
         int32_t periods[3] = {0, 0, 0};
@@ -272,4 +319,10 @@ double fibrad_scene_exposed_area(const fibrad_scene *scene, uint32_t i) {
     if (!fibrad_scene_ready(scene) || i >= scene->facts.spheres) return __builtin_nan("");
     const double r = scene->r[scene->place[i]];
     return scene->clump != NULL ? scene->clumps.exposed[scene->place[i]] : 4 * FIBRAD_PI * (r * r);
+}
+
+double fibrad_scene_volume(const fibrad_scene *scene, uint32_t i) {
+    if (!fibrad_scene_ready(scene) || i >= scene->facts.spheres) return __builtin_nan("");
+    const double r = scene->r[scene->place[i]];
+    return scene->clump != NULL ? scene->clumps.volume[scene->place[i]] : 4. / 3 * FIBRAD_PI * (r * r * r);
 }

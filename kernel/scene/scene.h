@@ -86,9 +86,11 @@ typedef struct fibrad_link {
     int32_t periods[3]; /* of the image of `to` that belongs to the sphere */
 } fibrad_link;
 
-/* What a scene with clumps has. All but `exposed` is used while it is made. */
+/* What a scene with clumps has. All but `exposed` and `volume` is used while it is made. */
 typedef struct fibrad_clumps {
-    double *exposed; /* L^2, [n], in scene order */
+    double *exposed;    /* L^2, [n], in scene order */
+    double *volume;     /* L^3, [n], share of the volume of the clump */
+    double (*outer)[3]; /* [n], sum of the normals of the exposed part of a unit sphere, times their areas */
     fibrad_link *link;
     fibrad_cap *cap;     /* [n], of one sphere */
     double (*hidden)[2]; /* [n], of one circle */

@@ -125,6 +125,9 @@ class Bed:
     def _area_of(self, wall: int) -> float:
         return float(library.fibrad_bed_wall_area(self._handle, wall))
 
+    def _areas(self) -> NDArray[np.float64]:
+        return 4 * math.pi * self._packing.r**2 if self._packing.clump is None else self.surfaces()[0]
+
     def __repr__(self) -> str:
         r = self._packing.r
         radii = f" of radius {r.min():.6g} to {r.max():.6g}" if self.n else ""
@@ -165,6 +168,13 @@ class Bed:
         self._use(library.fibrad_bed_move, container.config, packing.spheres, packing=packing, container=container)
         self._packing, self._container = packing, container
         self._warn(PLACES)
+
+    def surfaces(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """[L^2] and [L^3] (n,) areas and volumes of the spheres. The area of a member of a clump is what no other member
+        hides. The volume of a clump, counted once, is shared out among its members in proportion to ``r**3``."""
+        area, volume = np.zeros(self.n), np.zeros(self.n)
+        self._use(library.fibrad_bed_surfaces, pointer(area), pointer(volume))
+        return area, volume
 
     def close(self) -> None:
         """Frees the memory. The object cannot be used afterwards."""
@@ -366,7 +376,7 @@ class Bed:
                              packing.names, power is not None)
         given = container.with_values(walls)
         sources = Sources(packing, container, given, surroundings, sigma, tolerance, contacts, conductivity, convection,
-                          gas_temperature, gas_flow, self._area_of)
+                          gas_temperature, gas_flow, self._areas(), self._area_of)
         sources.c.temperature = pointer(kelvins)
         powers, wall_light = power_of(power, kelvins, packing), np.zeros(len(given))
         if light is not None:
@@ -440,7 +450,7 @@ class Bed:
             [s] Length of the span.
         capacity : (n,) array or float
             [J/K] Heat capacities of the spheres, mass times specific heat, above 0. With `store` [kg] masses. A sphere of
-            infinite capacity keeps its temperature.
+            infinite capacity keeps its temperature. Those of a clump add up: `surfaces` has the volumes.
         power : (n,) array or float, optional
             [W] Power of each sphere from inside. Default: none.
         surroundings_end : float, optional
@@ -471,7 +481,7 @@ class Bed:
         fraction = np.full(n, math.nan) if melted is None else per_sphere("melted", melted, n, 0, 1, packing.names, True).copy()
         given = container.with_values(walls)
         sources = Sources(packing, container, given, surroundings, sigma, None, contacts, conductivity, convection,
-                          gas_temperature, gas_flow, self._area_of)
+                          gas_temperature, gas_flow, self._areas(), self._area_of)
         if gas_temperature_end is not None and gas_temperature is None:
             raise refuse("gas_temperature_end needs gas_temperature")
         gas = (None if gas_temperature_end is None else

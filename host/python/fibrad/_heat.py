@@ -245,7 +245,7 @@ class Sources:
     def __init__(self, packing: Packing, container: Container, walls: list[Wall], surroundings: Optional[float],
                  sigma: float, tolerance: Optional[float], contacts: Any, conductivity: Optional[ArrayLike],
                  convection: Optional[ArrayLike], gas: Optional[ArrayLike], flow: Optional[GasFlow],
-                 area_of: Callable[[int], float]):
+                 area: NDArray[np.float64], area_of: Callable[[int], float]):
         n, names, self._packing = packing.n, packing.names, packing
         if surroundings is None and not container.closed():
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
@@ -257,7 +257,7 @@ class Sources:
                           per_sphere("conductivity", conductivity, n, 5e-324, math.inf, names))
         if (convection is None) != (gas is None):
             raise refuse("convection and gas_temperature need each other")
-        self._film = None if convection is None else per_sphere("convection", convection, n, 0, 1e12, names) * 4 * math.pi * packing.r**2
+        self._film = None if convection is None else per_sphere("convection", convection, n, 0, 1e12, names) * area
         self.gas = None if gas is None else per_sphere("gas_temperature", gas, n, 0, TEMPERATURE_MAX, names)
         self._wall_film, self._wall_gas = container.films(walls, area_of)
         self._set_stream(flow, gas)

@@ -226,6 +226,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "fibrad_bed_move": (c_int, [c_void_p, POINTER(SceneConfig), POINTER(Spheres)]),
     "fibrad_bed_describe": (None, [c_void_p, POINTER(SceneFacts), POINTER(Fault)]),
     "fibrad_bed_warnings": (c_uint32, [c_void_p, POINTER(Warning)]),
+    "fibrad_bed_bodies": (c_uint32, [c_void_p, POINTER(c_uint32)]),
+    "fibrad_bed_surfaces": (c_int, [c_void_p, POINTER(c_double), POINTER(c_double)]),
     "fibrad_bed_free": (None, [c_void_p]),
     "fibrad_bed_factors": (c_int, [c_void_p, POINTER(BedRule), POINTER(POINTER(BedMatrix))]),
     "fibrad_bed_matrix_free": (None, [POINTER(BedMatrix)]),
