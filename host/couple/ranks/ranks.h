@@ -102,7 +102,7 @@ typedef struct fibrad_particle {
 static inline fibrad_spheres fibrad_particle_spheres(const fibrad_particle *p, size_t n, uint64_t *id) {
     const uint32_t stride = sizeof *p / sizeof(double);
     for (size_t i = 0; i < n && id; ++i) id[i] = p[i].id;
-    return (fibrad_spheres){&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id};
+    return (fibrad_spheres){&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id, NULL};
 }
 
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,
