@@ -63,7 +63,8 @@ prefix=$tree/all/opt/fibrad
 {
     sed -n '/^Commands:/,/^$/s/^  \([a-z]*\) .*/share\/man\/man1\/fibrad-\1.1/p' "$tree/help"
     for file in bin/fibrad share/man/man1/fibrad.1 share/bash-completion/completions/fibrad lib/libfibrad.a \
-        lib/libfibrad_host.a lib/libfibrad.so "lib/$name" lib/pkgconfig/fibrad.pc lib/pkgconfig/fibrad_host.pc; do
+        lib/libfibrad_host.a lib/libfibrad.so "lib/$name" lib/pkgconfig/fibrad.pc lib/pkgconfig/fibrad_host.pc \
+        lib/cmake/fibrad/fibradConfig.cmake lib/cmake/fibrad/fibradConfigVersion.cmake; do
         echo "$file"
     done
     for file in README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md docs/*.md docs/figures/* docs/examples/*; do
