@@ -1,5 +1,5 @@
 #!/bin/sh
-# check_packages.sh - packages of Debian, unpacked into a folder, run; CMake finds the libraries there; the wheel works
+# check_deb.sh - packages of Debian, unpacked into a folder, run; CMake finds the libraries there; the wheel works
 # beside NumPy alone. SPDX-License-Identifier: MIT
 set -eu
 : "${BUILD:=build}" "${MAKE:=make}" "${CC:=cc}"
