@@ -64,7 +64,7 @@ int fibrad_clump_sums(MPI_Comm comm, const uint32_t *clump, const uint64_t *id, 
     return status;
 }
 
-int fibrad_insitu_exposed(fibrad_insitu *s, double *area) {
+int fibrad_insitu_exposed(fibrad_insitu *s, const uint32_t *clump, double *area) {
     const fibrad_insitu_set *set = &s->set;
     const size_t n = set->now_n;
     const int status = fibrad_agree(s->comm, fibrad_block_fit(&s->value, n + set->own, sizeof(double)), NULL);
@@ -75,6 +75,6 @@ int fibrad_insitu_exposed(fibrad_insitu *s, double *area) {
     for (size_t i = 0; i < set->own; ++i) value[n + i] = p[i].exposed;
     fibrad_link_reverse(set->present, value, 1);
     for (size_t i = 0; i < n; ++i)
-        if (value[i] > 0) area[i] = value[i];
+        if (clump[i]) area[i] = value[i];
     return FIBRAD_OK;
 }

@@ -37,8 +37,7 @@ static int check_conduction(fibrad_insitu *s, const fibrad_insitu_contacts *cont
         (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
         !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0 && contacts->wall >= 0))
         return FIBRAD_E_ARGUMENT;
-    if (bed->clump)
-        return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED, "contacts of clumps do not conduct here");
+    if (bed->clump) return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED, "contacts of clumps do not conduct here");
     if (bed->conductivity)
         return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
                              "contacts need particles of one temperature each, not particles that conduct inside");

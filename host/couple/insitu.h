@@ -60,11 +60,11 @@ struct fibrad_insitu {
     double source_paths;  /* paths of all sources over those of all particles, at most */
     double gather;        /* FIBRAD_GATHER_MOST; tests take less */
     char message[FIBRAD_MESSAGE];
-    fibrad_team team;                                  /* the threads, and their work memory */
-    fibrad_insitu_set set;                             /* the rows in use */
-    fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
-    int ready;                                         /* 1: there are rows */
-    uint64_t makings;                                  /* number of times that rows were made */
+    fibrad_team team;       /* the threads, and their work memory */
+    fibrad_insitu_set set;  /* the rows in use */
+    fibrad_insitu_set next; /* rows that are being made, in the memory of older rows */
+    int ready;              /* 1: there are rows */
+    uint64_t makings;       /* number of times that rows were made */
     fibrad_block scene, order, emissivity, clump, mark, sent; /* scratch while rows are made */
     fibrad_block known;  /* double [own][walls + 1], the same: as fibrad_exchange_rule.known of own particles */
     fibrad_block solver; /* double [4 own], where particles conduct: see powers.c */
@@ -119,13 +119,13 @@ typedef struct fibrad_insitu_build {
 /* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
 int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
 
-/* Collective. Gives area[n], of the particles of the last powers, what is exposed of those in clumps. Others keep what
- * is there, and so do those without rows. Errors, on all ranks: _MEMORY. */
-int fibrad_insitu_exposed(fibrad_insitu *insitu, double *area);
+/* Collective. Sets area[n] of the particles of the last powers that are in clumps to what is exposed of them; 0: they
+ * are left out. Errors, on all ranks: _MEMORY. */
+int fibrad_insitu_exposed(fibrad_insitu *insitu, const uint32_t *clump, double *area);
 
-/* Collective. Puts together the members of clumps. value[n][width]: in, of each particle; out, the first of them that of
- * the member of the least id, the others the sums over the members, in the order of their ids. So bits do not depend on
- * ranks. Particles of clump 0 keep their values. width: 2 to FIBRAD_CLUMP_WIDTH. Errors, on all ranks: _MEMORY. */
+/* Collective. Puts together the members of clumps. value[n][width]: in, of each particle; out, the first of them that
+ * of the member of the least id, the others the sums over the members, in the order of their ids. So bits do not depend
+ * on ranks. Particles of clump 0 keep their values. width: 2 to FIBRAD_CLUMP_WIDTH. Errors, on all ranks: _MEMORY. */
 #define FIBRAD_CLUMP_WIDTH 4
 int fibrad_clump_sums(MPI_Comm comm, const uint32_t *clump, const uint64_t *id, size_t n, double *value, int width);
 

@@ -277,8 +277,7 @@ int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t
         return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
     if (fault.first >= n || fault.second >= n) return status;
     const uint64_t first = id[fault.first], second = id[fault.second];
-    if (fault.why == FIBRAD_WHY_CLUMP)
-        return fibrad_refuse_particle(message, first, fibrad_why_text(fault.why));
+    if (fault.why == FIBRAD_WHY_CLUMP) return fibrad_refuse_particle(message, first, fibrad_why_text(fault.why));
     if (fault.first == fault.second)
         return fibrad_refuse_particle(message, first, "it lies too far from the origin for its size");
     if (first == second)
@@ -302,14 +301,14 @@ static void describe_overlap(fibrad_remark *remark, const fibrad_particle *p, co
 /* Finds to what part the radii of particles must be reduced, and remarks those of this rank. */
 static int find_overlaps(fibrad_insitu_build *b, fibrad_remark *remark) {
     fibrad_insitu *s = b->s;
-    const size_t n = b->own + b->halo, size = n <= FIBRAD_SPHERES_MAX ? fibrad_scene_size((uint32_t)n, 1) + fibrad_insitu_clumps(b, n) : 0;
+    const size_t n = b->own + b->halo,
+                 size = n <= FIBRAD_SPHERES_MAX ? fibrad_scene_size((uint32_t)n, 1) + fibrad_insitu_clumps(b, n) : 0;
     const fibrad_particle *p = b->to->particle.at;
     if (!size || fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, n, sizeof(double)) ||
         fibrad_block_fit(&s->order, n, sizeof(uint32_t)) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
         fibrad_block_fit(&s->clump, b->bed->clump ? n : 0, sizeof(uint32_t)))
         return FIBRAD_E_MEMORY;
-    const fibrad_spheres spheres =
-        fibrad_particle_spheres(p, n, b->to->id.at, b->bed->clump ? s->clump.at : NULL);
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, b->to->id.at, b->bed->clump ? s->clump.at : NULL);
     const uint32_t *other = s->order.at;
     double *part = s->emissivity.at;
     fibrad_fault fault;

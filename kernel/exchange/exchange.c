@@ -125,8 +125,9 @@ static double part_outside(const fibrad_scene *scene, uint32_t i, const fibrad_r
     return own > 0 ? 1 - (1 - scene->clumps.exposed[place] / (4 * FIBRAD_PI * (r * r))) / own : 0;
 }
 
-/* The fraction of the first segment that is reflected. outside: out, part_outside, of which own members reflect. wall: factors by slot. NaN: an emissivity is not valid. The sum
- * over spheres is a sum of whole numbers. So it does not depend on the order of the columns, which is the caller's. */
+/* The fraction of the first segment that is reflected. outside: out, part_outside, of which own members reflect. wall:
+ * factors by slot. NaN: an emissivity is not valid. The sum over spheres is a sum of whole numbers. So it does not
+ * depend on the order of the columns, which is the caller's. */
 static double reflected_of(const exchange_task *task, const fibrad_scene *scene, uint32_t i, const fibrad_row *row,
                            const double wall[FIBRAD_SLOTS], double *outside) {
     uint64_t units = 0, inside = 0;
@@ -288,7 +289,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error = 0, of_walls[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1, outside;
+    double beam_error = 0, of_walls[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1, outside = 1;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row segment = fibrad_row_scratch(space, of_walls);
     fibrad_paths paths = paths_of(task, space, scene, i);
@@ -299,7 +300,8 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
 
     keep_first_segment(&space->entries, &segment);
     fibrad_copy(wall, space->wall, sizeof wall);
-    const double carried = reflected_of(task, scene, i, &segment, wall, &outside), met = 1 - segment.escaped - segment.beyond;
+    const double carried = reflected_of(task, scene, i, &segment, wall, &outside),
+                 met = 1 - segment.escaped - segment.beyond;
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
     paths.segments = &space->segments;
     paths.entries = &space->entries;

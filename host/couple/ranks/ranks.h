@@ -96,7 +96,7 @@ typedef struct fibrad_particle {
         double temperature; /* K, of contacts */
     };
     uint64_t clump;     /* 0: it is alone */
-    double exposed;     /* L^2, area that no other member of its clump hides, when its row was made; 0: all */
+    double exposed;     /* L^2, area that no other member of its clump hides, when its row was made */
     fibrad_place owner; /* set by fibrad_halo and fibrad_gather: where its owner has it */
 } fibrad_particle;
 
