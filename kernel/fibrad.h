@@ -318,7 +318,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_FILM = 27,         /* A film is negative or out of range, or the temperature of its gas is. */
     FIBRAD_WHY_STREAM = 28,       /* A stream has no such slice, or its inlet or capacities are out of range. */
     FIBRAD_WHY_CLUMP = 29,        /* A clump touches its own image in the next period. */
-    FIBRAD_WHY_CLUMP_HEAT = 30,   /* Members of a clump have different temperatures, or only some have one. */
+    FIBRAD_WHY_CLUMP_HEAT = 30,   /* Members of a clump differ in temperature, or in what they store. */
     FIBRAD_WHY_CLUMP_SOLID = 31,  /* A member of a clump has a finite conductivity. */
     FIBRAD_WHY_CLUMP_LIGHT = 32   /* Light on clumps is not computed. */
 } fibrad_why;

@@ -151,9 +151,9 @@ typedef struct fibrad_stream {
  * does: also on spheres of emissivity 0. On a sphere with a finite conductivity it acts point by point. With a stream
  * the films of spheres end in the gas of their slices, whose temperatures are found. `gas` is then not used.
  *
- * A clump (fibrad_spheres.clump) has one temperature. Its members have the same given temperature, or none. Their powers,
- * storages, films and contacts add up. Contacts between members carry nothing. Emissivities are their own. Members may
- * have no finite conductivity.
+ * A clump (fibrad_spheres.clump) has one temperature. Its members have the same given temperature, or none. Their
+ * powers, storages, films and contacts add up. Contacts between members carry nothing. Emissivities are their own.
+ * Members may have no finite conductivity.
  *
  * With `contact_places` the contacts of a sphere with a finite conductivity act where the line to the other centre, or
  * the normal of the plane or cylinder, leaves the sphere. Contacts with meshes act on the mean of the sphere's

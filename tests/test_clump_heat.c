@@ -497,6 +497,32 @@ TEST(cooling) {
     ck_assert_int_eq(fibrad_bed_advance(made, &sources, &span), FIBRAD_E_ARGUMENT);
 }
 
+/* A clump that melts at one temperature: it stays there until all of it has melted. One that is held stays. */
+TEST(melting) {
+    struct lumps l = dumbbell(1, 0);
+    OWNED_MADE *made = NULL;
+    const fibrad_spheres spheres = spheres_of_lumps(&l);
+    const double at = 300, c = 500, film[] = {30, 10}, gas[] = {1000, 1000}, power[] = {100, 0};
+    const fibrad_store store = {
+        .temperature = &at, .capacity = &c, .rows = 1, .melting = 600, .latent = 2e5, .width = 0};
+    double t[] = {600, 600}, melted[] = {0, 0}, mass[] = {3, 1};
+    fibrad_heat_sources sources = sources_of_lumps(&l);
+    fibrad_span span = {.temperature = t, .capacity = mass, .duration = 20, .store = &store, .stores = 1};
+    span.melted = melted;
+    sources.film = film, sources.gas = gas, sources.power = power;
+    assert_ok(made_with(&made, NULL, &spheres, NULL, NULL));
+    assert_ok(fibrad_bed_advance(made, &sources, &span));
+    for (int i = 0; i < 2; i++) {
+        ck_assert_double_eq_tol(t[i], 600, 1e-9);
+        assert_near(melted[i], 20 * (40 * 400 + 100) / (4 * 2e5), 1e-9);
+    }
+    mass[0] = INFINITY;
+    ck_assert_int_eq(fibrad_bed_advance(made, &sources, &span), FIBRAD_E_ARGUMENT);
+    mass[1] = INFINITY, t[0] = t[1] = 700, melted[0] = melted[1] = NAN;
+    assert_ok(fibrad_bed_advance(made, &sources, &span));
+    for (int i = 0; i < 2; i++) ck_assert_double_eq(t[i], 700);
+}
+
 /* The volume of a clump: a lens counted once; points. */
 TEST(volumes) {
     struct lumps l = four(1);
@@ -564,8 +590,8 @@ TEST(words) {
         expect_message(place, reason);                                                                                 \
     } while (0)
     int status = 3;
-    REFUSE(formatted("%s:3", bad), "sphere 1: the members of clump 3 have different temperatures", "heat", bad, BLACK,
-           "--clump", "body");
+    REFUSE(formatted("%s:3", bad), "sphere 1: the members of clump 3 have different temperatures or stores", "heat",
+           bad, BLACK, "--clump", "body");
     status = 2;
     REFUSE("--members", "needs --clump", "heat", bad, BLACK, "--members");
     REFUSE("--clump", "leave out --solid-conductivity", "heat", bad, BLACK, "--clump", "body", "--solid-conductivity",

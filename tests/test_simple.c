@@ -420,7 +420,8 @@ static void powers(fibrad_bed *radiation, const fibrad_heat_sources *sources, do
 
 TEST(radiation_moves) {
     OWNED_BED bed = packing(N, .8, 1.2, .5, 3, false);
-    const fibrad_spheres spheres = spheres_of(&bed), fewer = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = N - 1};
+    const fibrad_spheres spheres = spheres_of(&bed),
+                         fewer = {.x = bed.x, .y = bed.y, .z = bed.z, .r = bed.r, .n = N - 1};
     const fibrad_heat_config config = {.directions = 20, .patches = 24};
     const fibrad_wall wall = plane_at(0, 0, -5);
     double temperature[N], emissivity[N], first[N], power[N], again[N], kept;

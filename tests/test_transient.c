@@ -383,8 +383,7 @@ TEST(threads_change_nothing) {
 TEST(what_is_refused) {
     OWNED_BY(furnace_free) struct furnace f;
     furnace_init(&f);
-    const fibrad_spheres spheres = spheres_of(&f.bed),
-                         fewer = {.x = f.bed.x, .y = f.bed.y, .z = f.bed.z, .r = f.bed.r, .n = N - 1};
+    const fibrad_spheres spheres = spheres_of(&f.bed), fewer = {f.bed.x, f.bed.y, f.bed.z, f.bed.r, N - 1, .id = NULL};
     fibrad_bed *t;
     fibrad_fault fault;
     const fibrad_span good = {f.temperature, f.capacity, .duration = 1e-3};

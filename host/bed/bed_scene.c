@@ -72,9 +72,10 @@ int bed_status(const struct bed *bed, const char *file, int status, const fibrad
     for (int axis = 1; axis < 3 && place; ++axis)
         if (fabs(value[axis]) > fabs(value[worst])) worst = axis;
     if (fault->why == FIBRAD_WHY_CLUMP_HEAT)
-        return message_at(STATUS_INPUT, file, bed->line[first],
-                          "sphere %lld: the members of clump %u have different temperatures, or only some have one",
-                          (long long)bed_name(bed, first), bed->clump[first]);
+        return message_at(
+            STATUS_INPUT, file, bed->line[first],
+            "sphere %lld: the members of clump %u have different temperatures or stores, or only some have one",
+            (long long)bed_name(bed, first), bed->clump[first]);
     if (place || fault->why == FIBRAD_WHY_RADIUS)
         return message_at(STATUS_INPUT, file, bed->line[first], "sphere %lld: %c is %g: %s",
                           (long long)bed_name(bed, first), "xyzr"[worst], value[worst], fibrad_why_text(fault->why));

@@ -31,11 +31,28 @@ static int by_ends(const void *a, const void *b) {
     return x->distance < y->distance ? -1 : x->distance > y->distance;
 }
 
+/* The conductivity of the gas at a temperature: linear between rows, and constant beyond them. */
+static double gas_at(const fibrad_insitu_contacts *c, double temperature) {
+    const double *t = c->gas_temperature, *k = c->gas_conductivity;
+    uint32_t row = 0;
+    while (row < c->gas_rows && t[row] < temperature) ++row;
+    if (row == 0 || row == c->gas_rows) return c->gas_rows == 0 ? c->gas : k[row > 0 ? row - 1 : 0];
+    return k[row] - (t[row] - temperature) / (t[row] - t[row - 1]) * (k[row] - k[row - 1]);
+}
+
+static bool gas_valid(const fibrad_insitu_contacts *c) {
+    bool valid = c->gas >= 0 && (c->gas_rows == 0 || (c->gas_temperature && c->gas_conductivity));
+    for (uint32_t k = 0; k < c->gas_rows && valid; ++k)
+        valid = c->gas_conductivity[k] >= 0 && c->gas_conductivity[k] < INFINITY &&
+                (k == 0 || c->gas_temperature[k] > c->gas_temperature[k - 1]);
+    return valid;
+}
+
 static int check_conduction(fibrad_insitu *s, const fibrad_insitu_contacts *contacts, const fibrad_insitu_bed *bed,
                             const fibrad_insitu_state *state) {
     if (!contacts || (bed->n && !contacts->conductivity) || state->n != bed->n || bed->walls != s->set.walls ||
         (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
-        !(contacts->scale >= 0 && contacts->gas >= 0 && contacts->gas_least >= 0 && contacts->wall >= 0))
+        !(contacts->scale >= 0 && gas_valid(contacts) && contacts->gas_least >= 0 && contacts->wall >= 0))
         return FIBRAD_E_ARGUMENT;
     if (bed->clump) return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED, "contacts of clumps do not conduct here");
     if (bed->conductivity)
@@ -72,8 +89,9 @@ static int gather_particles(fibrad_insitu_build *b, const fibrad_insitu_contacts
 }
 
 /* Finds the conductances of all contacts of the gathered particles. *conductor: [*count], in order; to be freed. */
-static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts, double gas_reach,
-                           struct conductor **conductor, uint32_t *count) {
+static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_contacts *contacts,
+                           const fibrad_insitu_state *state, double gas_reach, struct conductor **conductor,
+                           uint32_t *count) {
     fibrad_contact_rule rule = {.spots = contacts->hertz ? FIBRAD_SPOTS_HERTZ : FIBRAD_SPOTS_LENS};
     rule.scale = contacts->scale, rule.gas_reach = gas_reach, rule.gas_least = contacts->gas_least,
     rule.wall = contacts->wall;
@@ -91,7 +109,11 @@ static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_con
     struct conductor *c = *conductor = malloc(((size_t)list->n + 1) * sizeof *c);
     status = solid && c ? FIBRAD_OK : FIBRAD_E_MEMORY;
     for (uint32_t i = 0; i < spheres.n && !status; ++i) solid[i] = p[i].conductivity;
-    for (uint32_t k = 0; k < list->n && !status; ++k) gas[k] = contacts->gas;
+    for (uint32_t k = 0; k < list->n && !status; ++k) {
+        const uint32_t j = list->second[k];
+        const double other = j < spheres.n ? p[j].temperature : state->wall_temperature[j - spheres.n];
+        gas[k] = gas_at(contacts, (p[list->first[k]].temperature + other) / 2);
+    }
     if (!status) status = fibrad_contacts_conduct(list, &rule, solid, gas, conductance);
     for (uint32_t k = 0; k < list->n && !status; ++k)
         c[k] = (struct conductor){list->first[k], list->second[k], list->distance[k], conductance[k]};
@@ -177,10 +199,10 @@ int fibrad_insitu_conduct(fibrad_insitu *s, const fibrad_insitu_contacts *contac
     if (!status) status = fibrad_insitu_check_state(s, state, power);
     if (!status) status = conductance || !bed->n ? check_conduction(s, contacts, bed, state) : FIBRAD_E_ARGUMENT;
     status = fibrad_agree(s->comm, status, s->message);
-    const double gas_reach = !status && contacts->gas > 0 ? FIBRAD_GAS_REACH_DEFAULT : 0;
+    const double gas_reach = !status && (contacts->gas > 0 || contacts->gas_rows > 0) ? FIBRAD_GAS_REACH_DEFAULT : 0;
     if (!status) status = gather_particles(&b, contacts, state, gas_reach);
     if (!status) {
-        status = find_conductors(&b, contacts, gas_reach, &conductor, &count);
+        status = find_conductors(&b, contacts, state, gas_reach, &conductor, &count);
         status = fibrad_agree(s->comm, status, s->message);
     }
     if (!status) {

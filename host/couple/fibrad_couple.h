@@ -264,8 +264,11 @@ typedef struct fibrad_insitu_contacts {
     double gas;                 /* power/(L K), conductivity of the gas in narrow gaps; 0: none */
     double gas_least;           /* L, least gap that counts; 0: 1e-7 of the smaller radius */
     double wall;                /* power/(L K), conductivity of walls at spots; 0: infinite */
-    const double *capacity;     /* energy/K, heat capacities [n] of the bed, above 0 to INFINITY; NULL: one part */
-    double seconds;             /* of the step of heat for which the powers are; unused without capacity */
+    /* [gas_rows] K, ascending, and power/(L K): the gas by the mean temperature of both ends, in place of `gas` */
+    const double *gas_temperature, *gas_conductivity;
+    uint32_t gas_rows;
+    const double *capacity; /* energy/K, heat capacities [n] of the bed, above 0 to INFINITY; NULL: one part */
+    double seconds;         /* of the step of heat for which the powers are; unused without capacity */
 } fibrad_insitu_contacts;
 
 /* What all contacts conduct, the same on all ranks. Powers of particles and walls add up to 0, to rounding. */

@@ -68,7 +68,7 @@ int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) 
     for (uint32_t i = 0; i < h->bed->n; ++i) {
         state->metres[i] = state->area[i] * gsl_pow_2(bed->metres);
         add_member(h, i, isnan(what->sources->temperature[i]), area);
-        if (what->melted) melted[state->body[i]] = what->melted[i];
+        if (what->melted) melted[state->body[i]] = what->melted[i]; /* all members are equally melted */
     }
     if (!h->result.conducted) result->conducted = NULL;
     if (!h->result.convected) result->convected = NULL;

@@ -177,7 +177,8 @@ struct film_state {
     double section, inlet_end;    /* [m2] cross-section; [K] temperature of the inlet at the end of a span of time */
 };
 
-/* ---- clumps: bodies of several spheres ---------------------------------------------------------------------------- */
+/* ---- clumps: bodies of several spheres ----------------------------------------------------------------------------
+ */
 
 /* Row of a table of options, for a request with a field `members`, without braces. */
 #define OPTION_MEMBERS(request)                                                                                        \
@@ -187,8 +188,8 @@ struct film_state {
 /* A paragraph of --help. */
 #define CLUMPS_MORE                                                                                                    \
     "--clump: A clump is one body of one temperature; what its spheres hide of each other is no surface. Its\n"        \
-    "spheres have the same temperature or none; their powers add up. It stores heat by its volume, and gains\n"       \
-    "from gas by its exposed area, area_m2. The .csv and .json have a line a clump, i being its number; .vtp\n"       \
+    "spheres have the same temperature or none; their powers add up. It stores heat by its volume, and gains\n"        \
+    "from gas by its exposed area, area_m2. The .csv and .json have a line a clump, i being its number; .vtp\n"        \
     ".dump and --profile have the spheres. Contacts within a clump carry nothing.\n"
 
 /* Clumps of one bed. NULL: there are none. */

@@ -226,11 +226,13 @@ static int find_capacities(struct time_run *m, double **capacity) {
                 message_at(STATUS_INPUT, file, h->bed->line[i],
                            "the temperature is %g K; the initial temperature must be above 0", m->span.temperature[i]);
         const double r = h->bed->r[i] * h->bed->metres, store = m->specific[i] * density[i];
-        const double volume =
-            h->clumps.area ? heat_volume(h, i) * gsl_pow_3(h->bed->metres) : (4. / 3 * M_PI) * gsl_pow_3(r);
         const bool held = isinf(store);
         if (h->conductivity && !held) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * h->conductivity[i]));
-        (*capacity)[i] = (m->store && !held ? density[i] : store) * volume;
+        (*capacity)[i] = m->store && !held ? density[i] : store;
+        if (h->clumps.area)
+            (*capacity)[i] *= heat_volume(h, i) * gsl_pow_3(h->bed->metres);
+        else
+            (*capacity)[i] = (*capacity)[i] * (4. / 3 * M_PI) * gsl_pow_3(r);
     }
     free(density);
     return status;

@@ -388,7 +388,7 @@ typedef struct fibrad_span {
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
  * if there are contacts, films or clumps, or if the temperature of a wall is to be found, as that of a wall with a
- * capacity. The members of a clump begin at one temperature, and have one store.
+ * capacity. The members of a clump begin at one temperature, equally melted, and have the same store.
  *
  *   field of sources                    use
  *   temperature, storage, reference     not used

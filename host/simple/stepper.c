@@ -290,7 +290,7 @@ static int try_step(struct stepper *m, double time, double step, double *error) 
     const double length = GAMMA * step;
     for (uint32_t i = 0; i < m->bed->facts.spheres; ++i) {
         t->base[i] = t->now[i];
-        t->heat[i] = near_to(t->now[i] + length * t->slope[i], t->now[i]);
+        t->heat[i] = is_held(m, i) ? t->now[i] : near_to(t->now[i] + length * t->slope[i], t->now[i]);
         t->guess[i] = stored_at(m, i, t->heat[i]).temperature;
     }
     for (uint32_t b = 0; b < m->bed->facts.walls; ++b) t->wall_base[b] = t->wall_found[b] = t->wall_now[b];
@@ -430,6 +430,16 @@ static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
     return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
 }
 
+/* Whether a sphere stores heat as the first member of its clump does, and begins as it. */
+static bool is_like_first(const fibrad_bed *bed, const fibrad_span *span, uint32_t i) {
+    const uint32_t first = first_member(bed, i);
+    const double melted[] = {span->melted ? span->melted[i] : 0, span->melted ? span->melted[first] : 0};
+    return span->temperature[i] == span->temperature[first] &&
+           (span->capacity[i] == INFINITY) == (span->capacity[first] == INFINITY) &&
+           (!span->store_of || span->store_of[i] == span->store_of[first]) &&
+           (melted[0] == melted[1] || (isnan(melted[0]) && isnan(melted[1])));
+}
+
 /* Checks a span. bed->fault: the first sphere with an invalid value. */
 static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
     const uint32_t n = bed->facts.spheres, walls = bed->facts.walls;
@@ -441,7 +451,6 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
         return FIBRAD_E_ARGUMENT;
     for (uint32_t i = 0; i < n; ++i) {
         const double capacity = span->capacity[i];
-        const uint32_t first = first_member(bed, i);
         const int why = !(span->temperature[i] > 0 && span->temperature[i] <= FIBRAD_TEMPERATURE_MAX)
                             ? FIBRAD_WHY_TEMPERATURE
                         : !(capacity > 0 && (capacity <= FIBRAD_CAPACITY_MAX || capacity == INFINITY)) ||
@@ -449,10 +458,8 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
                             ? FIBRAD_WHY_CAPACITY
                         : s->power && !(fabs(s->power[i]) <= FIBRAD_POWER_MAX) ? FIBRAD_WHY_POWER
                         : !(s->emissivity[i] >= 0 && s->emissivity[i] <= 1)    ? FIBRAD_WHY_EMISSIVITY
-                        : span->temperature[first] != span->temperature[i] ||
-                                (span->store_of && span->store_of[first] != span->store_of[i])
-                            ? FIBRAD_WHY_CLUMP_HEAT
-                            : 0;
+                        : !is_like_first(bed, span, i)                         ? FIBRAD_WHY_CLUMP_HEAT
+                                                                               : 0;
         if (why) bed->fault = (fibrad_fault){i, i, UINT32_MAX, 0, why};
         if (why) return FIBRAD_E_ARGUMENT;
     }

@@ -70,8 +70,7 @@ struct heat_column {
 };
 
 /* Columns from HEAT_INSIDE on belong to spheres that conduct, those from HEAT_LIGHT on to light from outside, those
- * from HEAT_PARTS on are parts of the power. HEAT_MELTED is the fraction that has melted, HEAT_AREA the area of members
- * of clumps. */
+ * from HEAT_PARTS on are parts of the power. Then come the fraction that has melted, and areas beside clumps. */
 enum {
     HEAT_TEMPERATURE,
     HEAT_POWER,
@@ -81,8 +80,8 @@ enum {
     HEAT_LIGHT = 9,
     HEAT_PARTS = 11,
     HEAT_MELTED = 14,
-    HEAT_AREA = 15,
-    HEAT_COLUMNS = 16
+    HEAT_AREA,
+    HEAT_COLUMNS
 };
 
 /* The contents of .csv and .json: with clumps as bodies if what->bodies is set. */

@@ -260,8 +260,8 @@ struct free_share {
 
 static double beams_in_parts(const double part[4]) { return part[0] + part[2] + (part[1] + part[3]); }
 
-/* Sums up a row. Spheres with fine patches have no exact factor, and neither have members of the same clump, nor spheres
- * for whose beams there is no room. */
+/* Sums up a row. Spheres with fine patches have no exact factor, and neither have members of the same clump, nor
+ * spheres for whose beams there is no room. */
 static struct free_share share_of_free(const fibrad_heat *heat, uint32_t place, fibrad_entries *entries) {
     struct free_share share = {.exact = 0};
     uint32_t more = 0;

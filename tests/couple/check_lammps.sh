@@ -452,6 +452,25 @@ found=$(awk -F'[ ,]' 'FNR == 1 { file++ } FNR == 1 && file == 1 { for (k = 1; k 
     "$work/touch.csv" "$work/alone.dump" "$work/touch.dump")
 verdict "what contacts and gas bring is what fibrad heat says ($found)" $?
 
+# the same with a table for the gas, and bits of a table of one value
+printf 'T [K],k [W/(m K)]\n300,.02\n700,.05\n1500,.06\n' >"$work/gas.csv"
+printf '300 .03\n900 .03\n' >"$work/flat.csv"
+"$BUILD/fibrad" heat "$work/quarter.csv" --emissivity 1:.5,2:.8 --temperature T --ambient 300 --wall zmin:at=0:temperature=1000 \
+    --contacts lens --contact-conductivity 1:4,2:12 --gas-conductivity "@$work/gas.csv" --directions 50 --length-unit m \
+    -o "$work/tabled.csv" >/dev/null 2>&1
+for gas in gas flat; do
+    sed "s/touch.dump/tabled.$gas/" "$work/touch.lmp" >"$work/tabled.lmp"
+    run 2 tabled frozen.lmp "${whole[@]}" steps 0 strict "no contacts type 4 12 gas @$work/$gas.csv" also "include $work/tabled.lmp"
+done
+cmp "$work/touch.dump" "$work/tabled.flat"
+verdict "a table of one value for the gas: the same bits" $?
+found=$(awk -F'[ ,]' 'FNR == 1 { file++ } FNR == 1 && file == 1 { for (k = 1; k <= NF; k++) if ($k == "q_conduction_W") c = k }
+    file == 1 && $1 ~ /^[0-9]/ { q[$1] = $c } file == 2 && NF == 2 { alone[$1] = $2 } file == 3 && NF == 2 && $1 in q {
+        d = ($2 - alone[$1] - q[$1])^2; if (d > worst) worst = d; if (q[$1]^2 > most) most = q[$1]^2; n++ }
+    END { printf "%.2g", sqrt(worst/most); exit !(n == 499 && worst < 1e-16*most) }' \
+    "$work/tabled.csv" "$work/alone.dump" "$work/tabled.gas")
+verdict "what contacts and gas of a table bring is what fibrad heat says ($found)" $?
+
 # ---- errors of powers, and rows by the distance moved ------------------------------------------------------------------
 # scatter NAME WHAT WORDS: how powers of eight seeds part from their mean, against their errors
 scatter() {
@@ -682,6 +701,7 @@ fails "particle 10: convection -3 to gas of 400 K" "a heat transfer coefficient 
 fails "the time step must be at most" "convection for which the time step is too long" heat 1 strict "no convection 1e7 400"
 fails "there is no variable .h. of equal or atom style" "a coefficient that is not there" strict "no convection v_h 400"
 fails "convection. needs temperatures" "convection without temperatures" heat 0 strict "no convection 5 400"
+fails "none.csv: No such file" "a table for the gas that is not there" strict "no contacts 4 gas @none.csv"
 fails "contacts.* without .solid." "contacts beside solid" strict "no contacts 4 solid 4"
 fails "scale of contacts must be in" "a scale of 0" strict "no contacts 4 hertz scale 0"
 fails "contacts. needs temperatures" "contacts without temperatures" heat 0 strict "no contacts 4"

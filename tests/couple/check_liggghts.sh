@@ -176,7 +176,7 @@ for ranks in 1 2; do
         END {
             printf "%d rank(s): contacts and a floor of the driver and of LIGGGHTS part by %.1e K\n", ranks, sqrt(most)
             exit !(n == 588 && most < 1e-18) }' || complain "the floor conducts otherwise than that of LIGGGHTS"
-    awk -v q="$(value floor$ranks contacts_zmin)" 'BEGIN { exit !(q < -.1) }' || complain "the floor conducts nothing"
+    awk -v q="$(value "floor$ranks" contacts_zmin)" 'BEGIN { exit !(q < -.1) }' || complain "the floor conducts nothing"
 done
 
 # Gas: each step leaves 1 - h A t/C of the difference; by type, and by properties of particles
@@ -185,16 +185,16 @@ radiation='--emissivity 0 --surroundings 300 --wall zmin:temperature=1200:emissi
     echo 'fix gas all property/atom gas scalar yes no no 400' && echo "$dump" | sed 's/500 END/300 end_GAS/' && echo "$format"; } >in_gas
 for ranks in 1 2; do
     for words in "25 400" "film gas"; do
-        sed "s/GAS/gas$ranks/" in_gas >in_gas$ranks
-        run gas$ranks $ranks 'setforce 0 0 0' 300 -in in_gas$ranks --convection "$words"
-        awk -v q="$(value gas$ranks convection_particles)" -v heat="$(value gas$ranks heat_before) $(value gas$ranks heat_after)" '
+        sed "s/GAS/gas$ranks/" in_gas >"in_gas$ranks"
+        run "gas$ranks" "$ranks" 'setforce 0 0 0' 300 -in "in_gas$ranks" --convection "$words"
+        awk -v q="$(value "gas$ranks" convection_particles)" -v heat="$(value "gas$ranks" heat_before) $(value "gas$ranks" heat_after)" '
             NF == 3 && $1 + 0 == $1 { at[$1] = $2 }
             END {
                 left = exp(300 * log(1 - 25 * 3 / .003 / 2500 / 5 * 2e-5)); split(heat, h)
                 for (i in at) { d = at[i] - 400 - ((i + 0 <= 100 ? 900 : 300) - 400) * left; n++; if (d * d > most) most = d * d }
                 lost = (h[2] - h[1] - q) / q
                 printf "gas cools particles off by %.1e K, energy off by %.1e\n", sqrt(most), lost
-                exit !(n == 294 && most < 1e-18 && lost * lost < 1e-22) }' end_gas$ranks || complain "gas cools otherwise"
+                exit !(n == 294 && most < 1e-18 && lost * lost < 1e-22) }' "end_gas$ranks" || complain "gas cools otherwise"
     done
 done
 cmp end_gas1 end_gas2 || complain "what gas brings depends on ranks"

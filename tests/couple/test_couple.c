@@ -1228,21 +1228,23 @@ static void files_are_refused(fibrad_insitu *s) {
     check_refused(s, fibrad_insitu_write(s, NULL), FIBRAD_E_ARGUMENT, "is empty or too long");
 }
 
-/* Contacts of particles that conduct inside, at meshes, and of conductivities that are not above 0. */
+/* Contacts of particles that conduct inside, and of conductivities that are not above 0 or do not ascend. */
 static void contacts_are_refused(fibrad_insitu *s, const struct pile *good) {
     OWNED_PILE part = part_of(good, 0);
     const fibrad_insitu_state state = state_of(&part);
     double *solid = memory_of(part.bed.n, 2 * sizeof *solid), *kelvin = solid + part.bed.n;
     for (size_t i = 0; i < part.bed.n; ++i) solid[i] = 2;
-    const fibrad_insitu_contacts contacts = {.conductivity = solid};
-    const fibrad_wall kept = part.wall[1];
+    fibrad_insitu_contacts contacts = {.conductivity = solid};
     check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
                   FIBRAD_E_UNSUPPORTED, "not particles that conduct inside");
     part.bed.conductivity = NULL;
-    part.wall[1].kind = FIBRAD_WALL_MESH;
+    contacts.gas_temperature = contacts.gas_conductivity = (const double[]){300, 300}, contacts.gas_rows = 2;
     check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
-                  FIBRAD_E_UNSUPPORTED, "wall 2 is a mesh");
-    part.wall[1] = kept;
+                  FIBRAD_E_ARGUMENT, "");
+    contacts.gas_rows = 0, contacts.wall = -1;
+    check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
+                  FIBRAD_E_ARGUMENT, "");
+    contacts.wall = 0;
     if (rank == ranks - 1) solid[1] = 0;
     check_refused(s, fibrad_insitu_conduct(s, &contacts, &part.bed, &state, part.power, kelvin, NULL),
                   FIBRAD_E_ARGUMENT, "its conductivity at contacts must be above 0, not 0");

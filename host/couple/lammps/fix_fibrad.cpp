@@ -13,10 +13,6 @@
 #include "update.h"
 #include "variable.h"
 
-extern "C" {
-#include "cli/message.h"
-}
-
 #include <algorithm>
 #include <climits>
 #include <cmath>
@@ -284,7 +280,7 @@ FixFibrad::Property FixFibrad::read_film(const char *what, double high, bool num
     return property;
 }
 
-// K [lens | hertz] [scale S] [gas KG] [wall KW]
+// K [lens | hertz] [scale S] [gas KG | gas @FILE] [wall KW]
 void FixFibrad::read_contacts() {
     contact = read_property("the conductivity at contacts", 1e-300, 1e300);
     std::vector<const char *> words;
@@ -325,29 +321,15 @@ double FixFibrad::read_value(const std::string &what, double low, double high, T
     return table->value[0];
 }
 
-static void keep_line(void *context, const char *line) { *(std::string *)context = line; }
-
 // Rank 0 reads the file and sends the table to the other ranks.
 FixFibrad::Table FixFibrad::read_table(const std::string &path, const char *what, double low, double high) {
     curve read = {};
-    std::string message;
-    int status = 0;
-    if (comm->me == 0) {
-        message_redirect(keep_line, &message);
-        status = curve_read(path.c_str(), what + strlen("the "), &curve_values, low, high, &read);
-        message_redirect(nullptr, nullptr);
-    }
-    int size[] = {status, (int)read.n};
-    MPI_Bcast(size, 2, MPI_INT, 0, world);
+    radiation.comm = world;
+    need_good(radiation_table(&radiation, path.c_str(), what + strlen("the "), low, high, &read));
     Table table;
     table.kelvin.assign(read.x, read.x + read.n);
     table.value.assign(read.y, read.y + read.n);
     curve_free(&read);
-    if (size[0]) stop(message);
-    table.kelvin.resize(size[1]);
-    table.value.resize(size[1]);
-    MPI_Bcast(table.kelvin.data(), size[1], MPI_DOUBLE, 0, world);
-    MPI_Bcast(table.value.data(), size[1], MPI_DOUBLE, 0, world);
     return table;
 }
 

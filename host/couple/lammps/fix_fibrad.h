@@ -16,10 +16,6 @@
 
 #include "couple/simulation/radiation.h"
 
-extern "C" {
-#include "text/read_curve.h"
-}
-
 #include <string>
 #include <vector>
 

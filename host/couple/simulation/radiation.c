@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cli/message.h"
 #include "simple/cylinder.h"
 #include "couple/insitu.h"
 #include "text/read_number.h"
@@ -69,6 +70,11 @@ int radiation_contact_words(struct radiation *r, const char *const *word, int co
         }
         const char *value = at + 1 < count ? word[at + 1] : "";
         double number;
+        if (strcmp(word[at], "gas") == 0 && *value == '@') {
+            snprintf(r->gas_file, sizeof r->gas_file, "%s", value + 1);
+            at += 2;
+            continue;
+        }
         if (!scale && strcmp(word[at], "gas") != 0 && !(wall && number_read(value, &number))) break;
         if (!radiation_number(value,
                               scale  ? 1e-6
@@ -184,12 +190,41 @@ static bool make_walls(struct radiation *r, const int periodic[3]) {
     return true;
 }
 
+static void keep_sentence(void *fault, const char *line) { snprintf(fault, 2 * WALL_FAULT, "%s", line); }
+
+bool radiation_table(struct radiation *r, const char *path, const char *what, double low, double high,
+                     struct curve *curve) {
+    int rank, size[2] = {0};
+    MPI_Comm_rank(r->comm, &rank);
+    *curve = (struct curve){0};
+    if (rank == 0) {
+        message_redirect(keep_sentence, r->fault);
+        size[0] = curve_read(path, what, &curve_values, low, high, curve), size[1] = (int)curve->n;
+        message_redirect(NULL, NULL);
+    }
+    MPI_Bcast(size, 2, MPI_INT, 0, r->comm);
+    MPI_Bcast(r->fault, sizeof r->fault, MPI_CHAR, 0, r->comm);
+    if (size[0]) return false;
+    if (rank > 0) {
+        curve->n = (size_t)size[1];
+        curve->x = malloc(curve->n * sizeof(double)), curve->y = malloc(curve->n * sizeof(double));
+    }
+    if (fibrad_agree(r->comm, curve->x && curve->y ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL))
+        return refuse(r, "out of memory");
+    MPI_Bcast(curve->x, size[1], MPI_DOUBLE, 0, r->comm);
+    MPI_Bcast(curve->y, size[1], MPI_DOUBLE, 0, r->comm);
+    return true;
+}
+
 bool radiation_begin(struct radiation *r, MPI_Comm comm, const int periodic[3]) {
     r->comm = comm;
     if (r->accuracy && r->config.tolerance > 0) return refuse(r, "accuracy excludes tolerance");
     if (r->heats && !(r->surroundings >= 0))
         return refuse(r, "surroundings T is missing, the temperature of what surrounds the particles");
     if (!make_walls(r, periodic)) return false;
+    if (*r->gas_file && !radiation_table(r, r->gas_file, "conductivity of the gas", 0, 1e300, &r->gas)) return false;
+    r->spots.gas_temperature = r->gas.x, r->spots.gas_conductivity = r->gas.y;
+    r->spots.gas_rows = (uint32_t)r->gas.n;
     if (fibrad_insitu_new(&r->insitu, comm, &r->config)) return refuse(r, "out of memory");
     return true;
 }
@@ -408,4 +443,5 @@ void radiation_free(struct radiation *r) {
     fibrad_insitu_free(r->insitu);
     free(r->area);
     mesh_walls_free(&r->meshes);
+    curve_free(&r->gas);
 }

@@ -13,6 +13,8 @@
 extern "C" {
 #endif
 
+#include "text/read_curve.h"
+
 /* The keys of walls that simulations use. */
 enum {
     RADIATION_KEYS =
@@ -29,6 +31,8 @@ struct radiation {
     double surroundings;          /* K; NaN: not given */
     bool conducts;                /* contacts conduct */
     fibrad_insitu_contacts spots; /* the rest of what contacts are */
+    char gas_file[500];           /* a table of the conductivity of the gas; "": it is a number */
+    struct curve gas;             /* read from it */
 
     struct radiation_item {
         struct wall_words words;
@@ -72,7 +76,8 @@ bool radiation_whole(const char *word, int64_t low, int64_t high, int64_t *value
  * option. Else says what its value is, not beginning with "is". */
 const char *radiation_option(struct radiation *r, const char *name, const char *word);
 
-/* Reads [lens | hertz] [scale S] [gas KG] [wall KW] up to another word. Returns the number of words; -1 after an error.
+/* Reads [lens | hertz] [scale S] [gas KG | gas @FILE] [wall KW] up to another word. Returns the number of words; -1
+ * after an error.
  */
 int radiation_contact_words(struct radiation *r, const char *const *word, int count);
 
@@ -82,6 +87,10 @@ bool radiation_units(struct radiation *r, const char *style);
 /* Adds a wall. A plane or an opening replaces an earlier one on its side. `box` has six planes, and so has `auto`. The
  * texts of the words must last until radiation_begin has ended. */
 bool radiation_add_wall(struct radiation *r, const struct wall_words *words);
+
+/* Reads a table of values over temperatures on rank 0, and hands it to all ranks. what: the values, in sentences. */
+bool radiation_table(struct radiation *r, const char *path, const char *what, double low, double high,
+                     struct curve *curve);
 
 /* Checks the options and makes the walls. Sides of `box` along periodic axes are left out. */
 bool radiation_begin(struct radiation *r, MPI_Comm comm, const int periodic[3]);

@@ -449,8 +449,8 @@ class Bed:
         duration : float
             [s] Length of the span.
         capacity : (n,) array or float
-            [J/K] Heat capacities of the spheres, mass times specific heat, above 0. With `store` [kg] masses. Those of a
-            clump add up: `surfaces` has the volumes. A sphere of infinite capacity keeps its temperature.
+            [J/K] Heat capacities of the spheres, mass times specific heat, above 0. With `store` [kg] masses. A sphere of
+            infinite capacity keeps its temperature. Those of a clump add up: `surfaces` has the volumes.
         power : (n,) array or float, optional
             [W] Power of each sphere from inside. Default: none.
         surroundings_end : float, optional
