@@ -114,7 +114,7 @@ typedef enum fibrad_status {
     FIBRAD_E_SIZE = -2,         /* The block is smaller than the `_size` function says. */
     FIBRAD_E_CAPACITY = -4,     /* An output is too small. `length` or memory.needed is the size that suffices. */
     FIBRAD_E_TABLE = -5,        /* There is no set of so many points or lines. */
-    FIBRAD_E_GEOMETRY = -6,     /* A centre lies inside another sphere, or a sphere reaches beyond an opening. */
+    FIBRAD_E_GEOMETRY = -6,     /* A centre inside another sphere, a sphere beyond an opening, a period too short */
     FIBRAD_E_WORK = -7,         /* Fixed work memory is too small. work.memory.needed is the size that suffices. */
     FIBRAD_E_STATE = -8,        /* A call is missing, too early or repeated, or another scene has taken its memory. */
     FIBRAD_E_ISA = -9,          /* This build or this machine lacks the instruction set. */
@@ -400,16 +400,16 @@ typedef struct fibrad_scene_facts {
 /* Reads the facts of a scene. A null pointer, or a scene that is not complete, leaves `facts` as they are. */
 void fibrad_scene_describe(const fibrad_scene *scene, fibrad_scene_facts *facts);
 
-/* Area of a sphere that no other member of its clump hides [L^2]. It is exact to rounding, or to 1e-9 r^2 if circles in
- * which members cut nearly agree. Walls and other spheres hide nothing of it. For a sphere that is alone this is
- * 4 pi r^2.
+/* Exposed area of a sphere [L^2]: the part of its surface that no other member of its clump hides. It is exact to
+ * rounding, or to 1e-9 r^2 if circles in which members cut each other nearly agree. Walls and other spheres hide
+ * nothing of it. For a sphere that is alone this is 4 pi r^2.
  *   Input    i: 0 to spheres - 1
  *   Output   NaN: i is out of range, or the scene is not complete
  *   Source   docs/methods.md section 5 */
 double fibrad_scene_exposed_area(const fibrad_scene *scene, uint32_t i);
 
-/* Volume of a sphere [L^3]. That of a clump, what its members overlap counted once, is shared out among the members in
- * proportion to r^3.
+/* Volume of a sphere [L^3]. In the volume of a clump, what members share counts once. Each member has a part of this
+ * volume, in proportion to r^3.
  *   Input    i: 0 to spheres - 1
  *   Output   NaN: i is out of range, or the scene is not complete */
 double fibrad_scene_volume(const fibrad_scene *scene, uint32_t i);
@@ -474,7 +474,7 @@ typedef struct fibrad_row {
     uint32_t directions; /* out: number of directions of a row along directions, else 0 */
     uint32_t fallbacks;  /* out: windows that needed a slower, more robust method; rows by rays: 0 */
     int symmetric;       /* out: 1 if A_i F_ij = A_j F_ji holds without averaging */
-    uint32_t lines;      /* out: number of lines of a row along lines, else 0; with clumps also of directions */
+    uint32_t lines;      /* out: number of lines of a row along lines, else 0; with clumps that of directions, too */
     float *half;         /* [capacity], out, of a row along lines: half the difference of the factors by even and by odd
                             lines; infinity: the factor is exact, since nothing can come between both spheres. May be
                             NULL. Rows in a collection keep it. */
@@ -643,7 +643,7 @@ typedef struct fibrad_matrix_rule {
     uint32_t tasks;                  /* into how many tasks `parallel` divides, 1 to 1024; changes no bit; 0: 1 */
     const fibrad_wall_row *wall_row; /* [walls], copied; rows of endless walls are not read; NULL: no rows of walls */
     const double *wall_emissivity;   /* [walls], 0 to 1, read if wall_row is set; NULL: 1 */
-    uint32_t bodies;                 /* number of bodies, if rows and columns are bodies, such as clumps; 0: spheres */
+    uint32_t bodies;                 /* number of bodies, such as clumps; rows and columns are bodies; 0: spheres */
     const double *area;              /* L^2, [bodies], of their surfaces, above 0 */
     fibrad_parallel *parallel;       /* used by all calls for this matrix; NULL: the calling thread does all */
     void *context;                   /* handed to parallel */

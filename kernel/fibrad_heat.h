@@ -62,8 +62,8 @@ int fibrad_heat_init(fibrad_heat **heat, void *memory, size_t size, const fibrad
 /* Goes on with another scene, or with the same scene rebuilt in place. All tasks must be traced again. The next
  * solution starts from the radiosities of the last one.
  *   Input    scene: as many spheres and triangles as before, the same walls in the same order, and the same openings.
- *            It has clumps if the last one had.
- *            Each side of a triangle belongs to the same wall as before. Positions and sizes may differ.
+ *            Each side of a triangle belongs to the same wall as before. The scene has clumps if the last one had.
+ *            Positions and sizes may differ.
  *   Errors   _ARGUMENT, _STATE
  *            _SIZE: walls, or small spheres beside large ones, need more patches than the memory has room for; or
  *            more members of clumps overlap */
@@ -105,8 +105,8 @@ typedef struct fibrad_stream {
     const double *capacity; /* sigma K^3 L^2, [points], above 0: mass flow times specific heat, at these temperatures */
     uint32_t slices, points;
     double inlet; /* K, of the gas that enters */
-    double *gas;  /* K, [FIBRAD_STREAM_ROWS slices]: the first row has first guesses, not above 0: the inlet's; out:
-                   * temperatures of the slices; the other rows are memory */
+    double *gas;  /* K, [FIBRAD_STREAM_ROWS slices]; first row: in: first guesses, 0 or less: the inlet's temperature;
+                   * out: temperatures of the slices; the other rows are memory */
 } fibrad_stream;
 #define FIBRAD_STREAM_ROWS 4
 
@@ -146,14 +146,15 @@ typedef struct fibrad_stream {
  * 0 that is in contact has a temperature, and may give off a power. `conductance` is in units of sigma K^3 L^2. If
  * lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K is 1e6.
  *
- * A film exchanges heat with gas of a given temperature: film times the difference of the temperatures of gas and
- * surface. It is the heat transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact
- * does: also on spheres of emissivity 0. On a sphere with a finite conductivity it acts point by point. With a stream
- * the films of spheres end in the gas of their slices, whose temperatures are found. `gas` is then not used.
+ * A film exchanges heat with gas: film times the difference of the temperatures of gas and surface. It is the heat
+ * transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact does: also on spheres of
+ * emissivity 0. On a sphere with a finite conductivity it acts point by point. The temperature of the gas is given by
+ * `gas` and `wall_gas`. With a stream, each film of a sphere ends in the gas of the sphere's slice. The temperatures of
+ * this gas are found, and `gas` is not used.
  *
- * A clump (fibrad_spheres.clump) has one temperature. Its members have the same given temperature, or none. Their
- * powers, storages, films and contacts add up. Contacts between members carry nothing. Emissivities are their own.
- * Members may have no finite conductivity.
+ * A clump (fibrad_spheres.clump) has one temperature. Its members have the same given temperature, or none has one.
+ * Powers, storages, films and contacts of members add up. Contacts between members carry nothing. Each member has its
+ * own emissivity. No member may have a finite conductivity.
  *
  * With `contact_places` the contacts of a sphere with a finite conductivity act where the line to the other centre, or
  * the normal of the plane or cylinder, leaves the sphere. Contacts with meshes act on the mean of the sphere's
@@ -243,10 +244,10 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
 /* The solution. The arrays belong to the caller. Where a field may be NULL, NULL means that it is not wanted.
  *
  * A net power is above 0 where a surface gains heat, by radiation, through contacts and through its film. A given power
- * has the other sign: a sphere of power P (and storage 0) has the net power -P. For a clump this holds in sum; what its
- * members gain has estimated errors of its own. Temperatures are written whether they
- * were found or given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact and no film; or
- * only a temperature below zero would give the power.
+ * has the other sign: a sphere of power P (and storage 0) has the net power -P. For a clump this holds for the sum over
+ * its members. The net power of each member has its own estimated error. Temperatures are written whether they were
+ * found or given. A temperature is NaN in two cases: the emissivity is 0 and there is no contact and no film; or only a
+ * temperature below zero would give the power.
  *
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean

@@ -257,7 +257,7 @@ int fibrad_insitu_errors(fibrad_insitu *insitu, double (*error)[2]);
 int fibrad_insitu_write(fibrad_insitu *insitu, const char *path);
 
 /* What conducts heat where particles overlap each other or walls, by the rules of `fibrad heat --contacts`
- * (docs/heat.md). All but the conductivity is the same on all ranks. */
+ * (docs/heat.md). All but `conductivity` and `capacity` is the same on all ranks. */
 typedef struct fibrad_insitu_contacts {
     const double *conductivity; /* power/(L K), [n] of the bed, of the solid at spots, above 0 */
     int hertz;                  /* 1: spots of elastic spheres; 0: the circles in which surfaces cut each other */
@@ -265,9 +265,9 @@ typedef struct fibrad_insitu_contacts {
     double gas;                 /* power/(L K), conductivity of the gas in narrow gaps; 0: none */
     double gas_least;           /* L, least gap that counts; 0: 1e-7 of the smaller radius */
     double wall;                /* power/(L K), conductivity of walls at spots; 0: infinite */
-    /* [gas_rows] K, ascending, and power/(L K): the gas by the mean temperature of both ends, in place of `gas` */
+    /* [gas_rows] K, ascending, and power/(L K): in place of `gas`, a table over the mean temperature of both ends */
     const double *gas_temperature, *gas_conductivity;
-    uint32_t gas_rows;
+    uint32_t gas_rows;      /* 0: there is no table */
     const double *capacity; /* energy/K, heat capacities [n] of the bed, above 0 to INFINITY; NULL: one part */
     double seconds;         /* of the step of heat for which the powers are; unused without capacity */
 } fibrad_insitu_contacts;

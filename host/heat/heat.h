@@ -110,7 +110,7 @@ option_take irradiate_option, absorptivity_option;
 /* Checks the options when all have been read. of_emissivity: that of --emissivity. Status 0 or STATUS_USAGE. */
 int light_check(struct light_options *options, struct bed_options *bed, const struct quantity *of_emissivity);
 
-/* ---- convection: heat that spheres and walls exchange with gas of a given temperature ---------------------------- */
+/* ---- convection: heat that spheres and walls exchange with gas --------------------------------------------------- */
 
 /* Rows of a table of options, for a request with a field `film`: with braces, and without. */
 #define OPTIONS_FILM(request)                                                                                          \
@@ -140,8 +140,8 @@ int light_check(struct light_options *options, struct bed_options *bed, const st
     "and :gas=T; without :gas they have the gas of --gas-temperature, if that is one number or a table. Outputs\n"     \
     "have q_convection_W, which is a part of q_W, and a line for the gas.\n"                                           \
     "--gas-flow: The gas goes through slices of one mean diameter. Each slice has one temperature, which is found.\n"  \
-    "The line of the gas has the temperature of the outlet. The cross-section lies between the walls or periods\n"     \
-    "beside the flow, else about the spheres. --convection wakao:K,MU takes the coefficient of Wakao and Kaguei,\n"    \
+    "The line of the gas has the temperature of the outlet. The cross-section ends at the walls or periods\n"          \
+    "beside the flow, else at the spheres. --convection wakao:K,MU takes the coefficient of Wakao and Kaguei,\n"       \
     "gunn:K,MU that of Gunn, for gas of conductivity K [W/(m K)] and viscosity MU [Pa s].\n"
 
 /* Correlations of heat transfer coefficients: stream.c. */
@@ -177,20 +177,19 @@ struct film_state {
     double section, inlet_end;    /* [m2] cross-section; [K] temperature of the inlet at the end of a span of time */
 };
 
-/* ---- clumps: bodies of several spheres ----------------------------------------------------------------------------
- */
+/* ---- clumps: bodies of several spheres --------------------------------------------------------------------------- */
 
 /* Row of a table of options, for a request with a field `members`, without braces. */
 #define OPTION_MEMBERS(request)                                                                                        \
-    0, "members", NULL, "with --clump: a line of each sphere in .csv and .json [a line of each clump]",                \
+    0, "members", NULL, "with --clump: a line for each sphere in .csv and .json [a line for each clump]",              \
         TO_FLAG(request, members)
 
 /* A paragraph of --help. */
 #define CLUMPS_MORE                                                                                                    \
-    "--clump: A clump is one body of one temperature; what its spheres hide of each other is no surface. Its\n"        \
-    "spheres have the same temperature or none; their powers add up. It stores heat by its volume, and gains\n"        \
-    "from gas by its exposed area, area_m2. The .csv and .json have a line a clump, i being its number; .vtp\n"        \
-    ".dump and --profile have the spheres. Contacts within a clump carry nothing.\n"
+    "--clump: A clump is one body of one temperature. What its members hide of each other is no surface. Either\n"     \
+    "all members have the same temperature, or each has a power; their powers add up. A clump stores heat by its\n"    \
+    "volume, and gas acts on its exposed area, area_m2. The .csv and .json have a line for each clump, with its\n"     \
+    "number as i; .vtp, .dump and --profile have the spheres. Contacts within a clump carry nothing.\n"
 
 /* Clumps of one bed. NULL: there are none. */
 struct clump_state {

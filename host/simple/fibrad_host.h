@@ -107,8 +107,8 @@ typedef enum fibrad_warning_code {
     FIBRAD_WARNING_OPEN_ROWS = 10, /* Sums of rows of walls differ from 1 by `value`. */
     FIBRAD_WARNING_APART = 11,     /* Sums of rows of walls differed from 1 by `value` before they were closed. */
     FIBRAD_WARNING_CHANGED_ROW = 12, /* Closing has changed the row of sphere `first` by `value` times its error. */
-    FIBRAD_WARNING_PARTED = 13, /* Spheres `first` and `second` are of one clump, one of `count`, whose parts do not
-                                   touch. It is one body all the same. */
+    FIBRAD_WARNING_PARTED = 13, /* Spheres `first` and `second` are members of a clump whose parts do not touch, one
+                                   of `count` such clumps. It is one body all the same. */
     FIBRAD_WARNING_COVERED = 14 /* Sphere `first`, one of `count`, lies within other members, so it has no surface. */
 } fibrad_warning_code;
 #define FIBRAD_WARNINGS_MAX 14
@@ -160,10 +160,10 @@ void fibrad_bed_free(fibrad_bed *bed);
  * Rows of walls are computed if walls is 1, all rows are wanted, and the rule has no cutoff. If raw is 0, the rows of
  * spheres and walls are closed together. This changes the factors between spheres by less than their errors.
  *
- * With clumps (fibrad_spheres.clump) a clump is one body with one row and one column. Bodies are in the order of their
- * first spheres. A_C F_CD is the sum of A_i F_ij over members, with the whole areas A_i of spheres and the exposed area
- * A_C. F_CC is what the row lacks of 1, not below 0. A body's row is computed if one of its spheres is wanted. Exchange
- * factors of clumps are FIBRAD_E_UNSUPPORTED.
+ * A clump (fibrad_spheres.clump) is one body with one row and one column. So is a sphere that is alone. Bodies are in
+ * the order of their first spheres. A_C F_CD is the sum of A_i F_ij over members, A_i being the whole area of a member
+ * and A_C the exposed area of the clump. F_CC is what the row lacks of 1, not below 0. The row of a body is computed if
+ * one of its spheres is wanted. Exchange factors of clumps are refused with FIBRAD_E_UNSUPPORTED.
  *
  * Raw rows are those before averaging. Files in the scratch folder take 48 bytes for each entry of raw rows along
  * lines: 16 for the rows and 32 for the matrix. Entries of other rows take 36: 12 and 24. Files of rows may be up to
@@ -184,7 +184,7 @@ typedef struct fibrad_bed_matrix {
     fibrad_factors matrix;    /* a row that is not wanted is empty; rows and columns are bodies if there are clumps */
     fibrad_scene_facts facts; /* of the scene */
     const uint32_t *body;     /* [spheres], the row of each sphere; NULL: there are no clumps, row i is of sphere i */
-    const double *area;       /* L^2, [matrix.n], of which a row is; NULL: there are no clumps, it is 4 pi r^2 */
+    const double *area;       /* L^2, [matrix.n], exposed area of each row; NULL: there are no clumps, it is 4 pi r^2 */
     const double *wall_area;  /* L^2, [walls], as fibrad_scene_wall_area */
     int threads;              /* threads used */
     uint32_t directions;      /* largest number of directions of a row, or lines; 0: the method has none */
@@ -326,26 +326,26 @@ int fibrad_bed_shine(fibrad_bed *bed, const fibrad_light_sources *sources, fibra
  *            temperature[spheres]: [K] at that time */
 typedef void fibrad_observe(void *context, double time, const double *temperature);
 
-/* What a material stores: a heat capacity that follows the temperature, and a latent heat. Zeroed: 1 at all
- * temperatures. In a table of several rows no temperature may leave the range of the rows. */
+/* What a material stores: a heat capacity that follows the temperature, and a latent heat. Zeroed: the heat capacity is
+ * 1 at all temperatures, and nothing melts. No temperature may leave the range of a table of several rows. */
 typedef struct fibrad_store {
     const double *temperature; /* K, [rows], ascending; NULL if rows is 0 */
     const double *capacity;    /* J/(kg K), [rows], above 0 to FIBRAD_CAPACITY_MAX, linear in between */
     uint32_t rows;             /* 0: the capacity is 1; 1: it is constant */
-    double melting;            /* K, above 0: in the middle of the range in which the material melts */
-    double latent;             /* J/kg, above 0 to FIBRAD_CAPACITY_MAX, of all that melts; 0: nothing melts */
-    double width;              /* K, of this range, in which the melted fraction grows evenly; 0: melting point */
+    double melting;            /* K, above 0, middle of the range in which the material melts */
+    double latent;             /* J/kg, above 0 to FIBRAD_CAPACITY_MAX, of the whole range; 0: nothing melts */
+    double width;              /* K, of this range; the melted fraction grows evenly in it; 0: all melts at one T */
 } fibrad_store;
 
 /* A span of time. Times are in seconds if powers are in watts and capacities in J/K. Set temperature, capacity and
  * duration. The other fields may be zeroed.
  *
- * With `store` the field `capacity` has masses in kg. `melted` then keeps how much of a sphere has melted, from one
- * span to the next. A sphere of infinite capacity is held: its temperature stays. held_energy is what held spheres
- * gain, by their powers, too.
+ * With `store` the field `capacity` has masses in kg. From one span to the next `melted` then keeps the fraction of
+ * each sphere that has melted. A sphere of infinite capacity is held: its temperature stays. held_energy is what held
+ * spheres gain, their powers included.
  *
- * A wall with a capacity has a temperature that is found: sources->wall_temperature is that at the beginning, and the
- * wall may have a power. Such a wall is not endless or insulated, and its sides have no temperatures of their own. */
+ * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
+ * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own. */
 typedef struct fibrad_span {
     double *temperature;    /* K, [spheres], above 0 to FIBRAD_TEMPERATURE_MAX; in: at the beginning; out: at the end */
     const double *capacity; /* J/K, or kg with `store`, [spheres], above 0 to FIBRAD_CAPACITY_MAX, or infinity */
@@ -359,7 +359,7 @@ typedef struct fibrad_span {
     const double *wall_temperature; /* K, [walls], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
-    const double *inlet;          /* K, one number, of the gas of a stream at the end, the same; NULL: constant */
+    const double *inlet;          /* K, one number, inlet of a stream at the end, linear in between; NULL: constant */
     double step;                  /* s; all steps are equal and at most this long; 0: automatic steps */
     double tolerance;             /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
     double *power;                /* W, [spheres], out: net power at the end; may be NULL */
@@ -382,13 +382,15 @@ typedef struct fibrad_span {
 
 /* Advances the temperatures of spheres by a span of time: dH/dt = power + net power, H being the heat that a sphere
  * stores [J]. The scheme is implicit (SDIRK), of second order and L-stable: small spheres among large ones do not
- * limit the step. The energy that spheres lose is what walls, surroundings and gas gain, to rounding. The first
- * automatic step of a span is as long as the last span has proposed.
+ * limit the step. The energy that spheres lose is what walls, surroundings, gas and held spheres gain, to rounding. The
+ * first automatic step of a span is as long as the last span has proposed.
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * if there are contacts, films or clumps, or if the temperature of a wall is to be found, as that of a wall with a
- * capacity. The members of a clump begin at one temperature, equally melted, and have the same store.
+ * or if there are contacts, films or clumps. They do, too, if the temperature of a wall is to be found, as that of a
+ * wall with a capacity is.
+ *
+ * The members of a clump begin at one temperature, equally melted. They have the same store. All or none are held.
  *
  *   field of sources                    use
  *   temperature, storage, reference     not used
@@ -397,7 +399,7 @@ typedef struct fibrad_span {
  *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: a wall's is to be found
  *   wall_power, insulated, side_temperature    constant
  *   conductivity, conductance, film, wall_film    constant, or changed by a law; contacts act on means of surfaces
- *   stream                              its inlet: at the beginning of the span; its gas: out, at the end
+ *   stream                              inlet: at the beginning of the span; gas: out, at the end
  *   sigma, sweeps_max                   as for fibrad_bed_solve
  *   tolerance                           residual of a stage by patches; 0: a tenth of the span's tolerance
  *
@@ -450,13 +452,18 @@ typedef struct fibrad_contact_list {
  *   Cost     0.5 microseconds for each sphere within reach */
 int fibrad_bed_contacts(fibrad_bed *bed, const fibrad_contact_rule *rule, const fibrad_contact_list **list);
 
-/* What contacts conduct. A spot of radius a conducts 2 k a between spheres with 2/k = 1/k_i + 1/k_j, and to a wall of
- * the conductivity k_j, too. To a wall of infinite conductivity it conducts 4 k_i a. Gas conducts along lines parallel
- * to the line of centres, out to where the surface of one sphere leaves the gas about the other one. Input
- * solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0 gas[n]: conductivities of
- * the gas at each contact; NULL: no gas conducts Both are in the unit of fibrad_heat_sources.conductivity. Output
- * conductance[n]: in the unit of fibrad_heat_sources.conductance Errors   _ARGUMENT Cost     1 microsecond for each
- * contact with gas Source   docs/methods.md section 28 */
+/* What contacts conduct.
+ *
+ * A spot of radius a conducts 2 k a, 2/k = 1/k_i + 1/k_j. k_i is the conductivity of the sphere, k_j that of the other
+ * sphere or of the wall. To a wall of infinite conductivity the spot conducts 4 k_i a. Gas conducts along lines
+ * parallel to the line of centres, out to where the surface of one sphere leaves the gas about the other one.
+ *   Input    solid[spheres]: conductivities of spheres, above 0; infinity is allowed if rule->spots is 0
+ *            gas[n]: conductivities of the gas at each contact; NULL: no gas conducts
+ *            Both are in the unit of fibrad_heat_sources.conductivity.
+ *   Output   conductance[n]: in the unit of fibrad_heat_sources.conductance
+ *   Errors   _ARGUMENT
+ *   Cost     1 microsecond for each contact with gas
+ *   Source   docs/methods.md section 28 */
 int fibrad_contacts_conduct(const fibrad_contact_list *list, const fibrad_contact_rule *rule, const double *solid,
                             const double *gas, double *conductance);
 
