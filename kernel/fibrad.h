@@ -367,8 +367,9 @@ int fibrad_scene_init(fibrad_scene **scene, void *memory, size_t size, const fib
                       const fibrad_spheres *spheres, fibrad_fault *fault);
 
 /* Finds spheres whose centres lie inside others, so that no scene has them, and how much smaller they must be.
- *   Input    spheres: two spheres of one id are images of one, and are no pair
- *            memory[size]: at least fibrad_scene_size(n, ids) bytes; a scene in this memory is lost
+ *   Input    spheres: two spheres of one id are images of one, and are no pair, nor are members of one clump
+ *            memory[size]: at least fibrad_scene_size(n, ids) bytes, and fibrad_clumps_size(n) if there are clumps; a
+ *            scene in this memory is lost
  *   Output   part[n]: 1, or the least d/max(r_i, r_j) of all spheres j at a distance d < max(r_i, r_j), less 1e-9 of
  *            it for rounding. With the radii r_i part[i] each centre lies outside of the other sphere.
  *            other[n]: this sphere j; n: there is none

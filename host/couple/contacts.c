@@ -54,6 +54,7 @@ static int check_conduction(fibrad_insitu *s, const fibrad_insitu_contacts *cont
         (bed->n && memcmp(state->id, bed->id, bed->n * sizeof *bed->id) != 0) ||
         !(contacts->scale >= 0 && gas_valid(contacts) && contacts->gas_least >= 0 && contacts->wall >= 0))
         return FIBRAD_E_ARGUMENT;
+    if (bed->clump) return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED, "contacts of clumps do not conduct here");
     if (bed->conductivity)
         return fibrad_refuse(s->message, FIBRAD_E_UNSUPPORTED,
                              "contacts need particles of one temperature each, not particles that conduct inside");
@@ -99,7 +100,7 @@ static int find_conductors(const fibrad_insitu_build *b, const fibrad_insitu_con
                                         .triangles = b->bed->triangles,
                                         .period = {b->period[0], b->period[1], b->period[2]}};
     const fibrad_particle *p = b->to->particle.at;
-    const fibrad_spheres spheres = fibrad_particle_spheres(p, b->own + b->halo, NULL);
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, b->own + b->halo, NULL, NULL);
     fibrad_contact_list *list;
     int status = fibrad_contacts_find(&config, &spheres, &rule, &list);
     if (status) return status;

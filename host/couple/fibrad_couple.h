@@ -139,6 +139,10 @@ typedef struct fibrad_insitu_bed {
     const double *x;                          /* L, [n][3], centres */
     const double *radius;                     /* L, [n] */
     const double *emissivity;                 /* [n], 0 to 1; 0 reflects everything */
+    /* [n], number of the clump of each, a body of particles that may lie within one another, as in fibrad_spheres; 0:
+     * alone; NULL on all ranks: no clumps. Members must have one emissivity and get one temperature: then the sum of
+     * their powers is that of the clump. Not beside `conductivity` or fibrad_insitu_conduct. */
+    const uint32_t *clump;
     /* [n], k* as in fibrad_exchange_rule, at the temperatures of this call; NULL: infinite, one temperature each */
     const double *conductivity;
 } fibrad_insitu_bed;

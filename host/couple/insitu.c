@@ -97,8 +97,8 @@ void fibrad_insitu_free(fibrad_insitu *s) {
     close_set(&s->set, s->config.threads);
     close_set(&s->next, s->config.threads);
     fibrad_team_close(&s->team);
-    fibrad_block *const blocks[] = {&s->scene, &s->order,  &s->emissivity, &s->mark, &s->known,
-                                    &s->sent,  &s->solver, &s->value,      NULL};
+    fibrad_block *const blocks[] = {&s->scene, &s->order, &s->emissivity, &s->clump, &s->mark,
+                                    &s->known, &s->sent,  &s->solver,     &s->value, NULL};
     free_blocks(blocks);
     MPI_Comm_free(&s->comm);
     free(s);
@@ -123,8 +123,8 @@ void fibrad_insitu_facts_get(const fibrad_insitu *s, fibrad_insitu_facts *facts)
     facts->seconds_rows = s->seconds_rows;
     facts->seconds_powers = s->seconds_powers;
     facts->bytes = set_bytes(&s->set, s->config.threads) + set_bytes(&s->next, s->config.threads) + s->scene.size +
-                   s->order.size + s->emissivity.size + s->mark.size + s->known.size + s->sent.size + s->solver.size +
-                   s->value.size;
+                   s->order.size + s->emissivity.size + s->clump.size + s->mark.size + s->known.size + s->sent.size +
+                   s->solver.size + s->value.size;
     for (int t = 0; t < s->config.threads; ++t) facts->bytes += s->team.work[t].memory.size;
 }
 

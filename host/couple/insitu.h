@@ -60,12 +60,12 @@ struct fibrad_insitu {
     double source_paths;  /* paths of all sources over those of all particles, at most */
     double gather;        /* FIBRAD_GATHER_MOST; tests take less */
     char message[FIBRAD_MESSAGE];
-    fibrad_team team;                                  /* the threads, and their work memory */
-    fibrad_insitu_set set;                             /* the rows in use */
-    fibrad_insitu_set next;                            /* rows that are being made, in the memory of older rows */
-    int ready;                                         /* 1: there are rows */
-    uint64_t makings;                                  /* number of times that rows were made */
-    fibrad_block scene, order, emissivity, mark, sent; /* scratch while rows are made */
+    fibrad_team team;       /* the threads, and their work memory */
+    fibrad_insitu_set set;  /* the rows in use */
+    fibrad_insitu_set next; /* rows that are being made, in the memory of older rows */
+    int ready;              /* 1: there are rows */
+    uint64_t makings;       /* number of times that rows were made */
+    fibrad_block scene, order, emissivity, clump, mark, sent; /* scratch while rows are made */
     fibrad_block known;  /* double [own][walls + 1], the same: as fibrad_exchange_rule.known of own particles */
     fibrad_block solver; /* double [4 own], where particles conduct: see powers.c */
     fibrad_block value;  /* double, of present owners' particles, then of home particles */
@@ -119,6 +119,16 @@ typedef struct fibrad_insitu_build {
 /* Checks what is given with powers. Not collective. Errors: _ARGUMENT, _STATE. */
 int fibrad_insitu_check_state(fibrad_insitu *insitu, const fibrad_insitu_state *state, const double *power);
 
+/* Collective. Sets area[n] of the particles of the last powers that are in clumps to what is exposed of them; 0: they
+ * are left out. Errors, on all ranks: _MEMORY. */
+int fibrad_insitu_exposed(fibrad_insitu *insitu, const uint32_t *clump, double *area);
+
+/* Collective. Puts together the members of clumps. value[n][width]: in, of each particle; out, the first of them that
+ * of the member of the least id, the others the sums over the members, in the order of their ids. So bits do not depend
+ * on ranks. Particles of clump 0 keep their values. width: 2 to FIBRAD_CLUMP_WIDTH. Errors, on all ranks: _MEMORY. */
+#define FIBRAD_CLUMP_WIDTH 4
+int fibrad_clump_sums(MPI_Comm comm, const uint32_t *clump, const uint64_t *id, size_t n, double *value, int width);
+
 /* Collective. Finds what the unknown parts of rows could change in the powers that were found last, and remarks it.
  * unit: the root mean square of these powers */
 void fibrad_unknown_tell(fibrad_insitu *insitu, double unit);
@@ -136,6 +146,11 @@ int fibrad_insitu_gather(fibrad_insitu_build *b);
 
 /* Says why the spheres of n particles make no scene. Returns status, or FIBRAD_E_ARGUMENT. */
 int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t *id, size_t n, fibrad_fault fault);
+
+/* Bytes that clumps add to the scene of n particles. */
+static inline size_t fibrad_insitu_clumps(const fibrad_insitu_build *b, size_t n) {
+    return b->bed->clump ? fibrad_clumps_size((uint32_t)n) : 0;
+}
 
 /* Makes the scene of n particles in b->scene, with the periods of the box. With ids of a bed that is not whole, images
  * are particles of their own, and the coarse map tells where there are others. id[n]: out, may be NULL. Errors: as

@@ -62,6 +62,8 @@ static int check_bed(fibrad_insitu_build *b) {
         bed->walls > FIBRAD_WALLS_MAX || (bed->walls && !(bed->wall && bed->wall_emissivity)) ||
         bed->openings > FIBRAD_OPENINGS_MAX || (bed->openings && !bed->opening))
         return FIBRAD_E_ARGUMENT;
+    if (bed->clump && bed->conductivity)
+        return fibrad_refuse(message, FIBRAD_E_UNSUPPORTED, "clumps have one temperature each: they do not conduct");
     for (int axis = 0; axis < 3; ++axis) {
         if (!bed->periodic[axis]) continue;
         b->period[axis] = bed->high[axis] - bed->low[axis];
@@ -114,6 +116,7 @@ static int take_particles(fibrad_insitu_build *b) {
         fibrad_particle p = {.id = bed->id[i], .radius = bed->radius[i], .emissivity = bed->emissivity[i]};
         p.conductivity = bed->conductivity ? bed->conductivity[i] : INFINITY;
         p.node = fibrad_node_emissivity(p.emissivity, p.conductivity);
+        p.clump = bed->clump ? bed->clump[i] : 0;
         for (int axis = 0; axis < 3; ++axis) {
             const double x = bed->x[3 * i + (size_t)axis], period = b->period[axis];
             if (!(fabs(x) <= FIBRAD_LENGTH_MAX))
@@ -274,6 +277,7 @@ int fibrad_insitu_fault(const fibrad_insitu_build *b, int status, const uint64_t
         return fibrad_refuse(message, status, "triangle %" PRIu32 " of the walls is not valid", fault.triangle);
     if (fault.first >= n || fault.second >= n) return status;
     const uint64_t first = id[fault.first], second = id[fault.second];
+    if (fault.why == FIBRAD_WHY_CLUMP) return fibrad_refuse_particle(message, first, fibrad_why_text(fault.why));
     if (fault.first == fault.second)
         return fibrad_refuse_particle(message, first, "it lies too far from the origin for its size");
     if (first == second)
@@ -297,12 +301,14 @@ static void describe_overlap(fibrad_remark *remark, const fibrad_particle *p, co
 /* Finds to what part the radii of particles must be reduced, and remarks those of this rank. */
 static int find_overlaps(fibrad_insitu_build *b, fibrad_remark *remark) {
     fibrad_insitu *s = b->s;
-    const size_t n = b->own + b->halo, size = n <= FIBRAD_SPHERES_MAX ? fibrad_scene_size((uint32_t)n, 1) : 0;
+    const size_t n = b->own + b->halo,
+                 size = n <= FIBRAD_SPHERES_MAX ? fibrad_scene_size((uint32_t)n, 1) + fibrad_insitu_clumps(b, n) : 0;
     const fibrad_particle *p = b->to->particle.at;
     if (!size || fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->emissivity, n, sizeof(double)) ||
-        fibrad_block_fit(&s->order, n, sizeof(uint32_t)) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)))
+        fibrad_block_fit(&s->order, n, sizeof(uint32_t)) || fibrad_block_fit(&b->to->id, n, sizeof(uint64_t)) ||
+        fibrad_block_fit(&s->clump, b->bed->clump ? n : 0, sizeof(uint32_t)))
         return FIBRAD_E_MEMORY;
-    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, b->to->id.at);
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, b->to->id.at, b->bed->clump ? s->clump.at : NULL);
     const uint32_t *other = s->order.at;
     double *part = s->emissivity.at;
     fibrad_fault fault;

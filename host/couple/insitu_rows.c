@@ -13,8 +13,9 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
     if (n > FIBRAD_SPHERES_MAX) return FIBRAD_E_MEMORY;
     fibrad_triangles triangles = b->bed->triangles ? *b->bed->triangles : (fibrad_triangles){0};
     memcpy(triangles.period, b->period, sizeof triangles.period);
-    const size_t size = fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(triangles.n, (uint32_t)n);
-    if (fibrad_block_fit(&s->scene, size, 1) ||
+    const size_t size = fibrad_scene_size((uint32_t)n, id != NULL) + fibrad_triangles_size(triangles.n, (uint32_t)n) +
+                        fibrad_insitu_clumps(b, n);
+    if (fibrad_block_fit(&s->scene, size, 1) || fibrad_block_fit(&s->clump, b->bed->clump ? n : 0, sizeof(uint32_t)) ||
         fibrad_block_fit(&s->emissivity, (b->to->conducts ? 3 : 1) * n, sizeof(double)))
         return FIBRAD_E_MEMORY;
     double *emissivity = s->emissivity.at;
@@ -27,7 +28,7 @@ int fibrad_insitu_scene(fibrad_insitu_build *b, const fibrad_particle *p, size_t
         config.openings = b->openings, config.occupancy = marked ? &b->map : NULL, config.triangles = &triangles;
         if (!images) memcpy(config.period, b->period, sizeof config.period);
     }
-    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, id);
+    const fibrad_spheres spheres = fibrad_particle_spheres(p, n, id, b->bed->clump ? s->clump.at : NULL);
     fibrad_fault fault;
     const int status = fibrad_scene_init(&b->scene, s->scene.at, s->scene.size, &config, &spheres, &fault);
     return status && id ? fibrad_insitu_fault(b, status, id, n, fault) : status;
@@ -236,6 +237,9 @@ static int make_rows(fibrad_insitu_build *b) {
     const size_t n = b->own + b->halo;
     int status = fibrad_block_fit(&b->to->id, n, sizeof(uint64_t));
     if (!status) status = fibrad_insitu_scene(b, b->to->particle.at, n, b->to->id.at);
+    fibrad_particle *p = b->to->particle.at;
+    for (uint32_t i = 0; i < b->fresh && !status; ++i)
+        p[i].exposed = p[i].clump ? fibrad_scene_exposed_area(b->scene, i) : 0;
     if (!status) status = list_own(b);
     if (!status) status = compute_rows(b);
     if (!status) status = number_columns(b);

@@ -112,19 +112,37 @@ static int first_segment(const fibrad_scene *scene, fibrad_workspace *space, uin
     }
 }
 
-/* The fraction of the first segment that is reflected. wall: factors by slot. NaN: an emissivity is not valid. The sum
- * over spheres is a sum of whole numbers. So it does not depend on the order of the columns, which is the caller's. */
-static double reflected_of(const exchange_task *task, const fibrad_row *row, const double wall[FIBRAD_SLOTS]) {
-    uint64_t units = 0;
+/* What a member of a clump gets of its clump begins for the most part inside other members. The part of it that does
+ * not: the hidden part of the surface is known exactly. It may be below 0, since of two members the one whose centre is
+ * farther on has what leaves both; errors of members cancel in the sum over the clump. */
+static double part_outside(const fibrad_scene *scene, uint32_t i, const fibrad_row *row) {
+    const uint32_t place = scene->place[i];
+    const double r = scene->r[place];
+    double own = 0;
+    if (scene->clump == NULL || scene->clump[place] == 0) return 1;
+    for (uint32_t k = 0; k < row->length; k++)
+        if (fibrad_one_clump(scene, place, scene->place[row->col[k]])) own += row->f[k];
+    return own > 0 ? 1 - (1 - scene->clumps.exposed[place] / (4 * FIBRAD_PI * (r * r))) / own : 0;
+}
+
+/* The fraction of the first segment that is reflected. outside: out, part_outside, of which own members reflect. wall:
+ * factors by slot. NaN: an emissivity is not valid. The sum over spheres is a sum of whole numbers. So it does not
+ * depend on the order of the columns, which is the caller's. */
+static double reflected_of(const exchange_task *task, const fibrad_scene *scene, uint32_t i, const fibrad_row *row,
+                           const double wall[FIBRAD_SLOTS], double *outside) {
+    uint64_t units = 0, inside = 0;
     for (uint32_t k = 0; k < row->length; k++) {
         const double part = row->f[k] * (1 - task->emissivity[row->col[k]]);
         if (!(part >= 0 && part <= 2)) return __builtin_nan("");
-        units += (uint64_t)(part * 0x1p60);
+        const bool own = scene->clump != NULL && fibrad_one_clump(scene, scene->place[i], scene->place[row->col[k]]);
+        *(own ? &inside : &units) += (uint64_t)(part * 0x1p60);
     }
     double sum = (double)units * 0x1p-60;
     for (uint32_t slot = 0; slot < FIBRAD_SLOTS; slot++)
         if (fibrad_slot_of_wall(slot)) sum += wall[slot] * (1 - task->wall_emissivity[slot]);
-    return sum;
+    const double own = (double)inside * 0x1p-60;
+    *outside = inside > 0 ? fibrad_max(part_outside(scene, i, row), -sum / own) : 1;
+    return inside > 0 ? fibrad_max(0, sum + *outside * own) : sum;
 }
 
 double fibrad_paths_sum(const fibrad_paths *paths) {
@@ -242,14 +260,17 @@ static void keep_first_segment(fibrad_entries *entries, fibrad_row *segment) {
 }
 
 /* Adds the first segment to the scaled sums of the paths. */
-static void add_first_segment(fibrad_workspace *work, const double *of_sphere, const fibrad_row *row, double scale) {
+static void add_first_segment(fibrad_workspace *work, const double *of_sphere, const fibrad_row *row, double scale,
+                              uint32_t i, double outside) {
     fibrad_entries *entries = &work->entries;
     for (uint32_t k = 0; k < entries->length; k++)
         for (int part = 0; part < 4; part++) entries->part[k][part] *= scale;
     for (uint32_t k = 0; k < row->length; k++) {
-        const double emissivity = of_sphere[row->col[k]];
+        const uint32_t place = work->scene->place[row->col[k]];
+        double emissivity = of_sphere[row->col[k]];
+        if (fibrad_one_clump(work->scene, work->scene->place[i], place)) emissivity = 1 - outside * (1 - emissivity);
         if (!(emissivity > 0)) continue;
-        const uint32_t entry = fibrad_entries_of(entries, work->scene->place[row->col[k]]);
+        const uint32_t entry = fibrad_entries_of(entries, place);
         for (uint32_t part = 0; part < 4; part++)
             fibrad_entries_add(entries, entry, part, 0.25 * row->f[k] * emissivity);
     }
@@ -268,7 +289,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
                             fibrad_row *row) {
     exchange_task *task = *(exchange_task *const *)of;
     const fibrad_exchange_rule *rule = task->rule;
-    double beam_error = 0, of_walls[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1;
+    double beam_error = 0, of_walls[FIBRAD_WALLS_MAX], wall[FIBRAD_SLOTS], scale = 0, to_spheres = 1, outside = 1;
     if (task->emissivity[i] == 0) return empty_row(scene, row);
     fibrad_row segment = fibrad_row_scratch(space, of_walls);
     fibrad_paths paths = paths_of(task, space, scene, i);
@@ -279,7 +300,8 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
 
     keep_first_segment(&space->entries, &segment);
     fibrad_copy(wall, space->wall, sizeof wall);
-    const double carried = reflected_of(task, &segment, wall), met = 1 - segment.escaped - segment.beyond;
+    const double carried = reflected_of(task, scene, i, &segment, wall, &outside),
+                 met = 1 - segment.escaped - segment.beyond;
     const double weight = carried > 0 ? carried / fibrad_max(carried, met) : 0;
     paths.segments = &space->segments;
     paths.entries = &space->entries;
@@ -299,7 +321,7 @@ static int exchange_compute(const fibrad_scene *scene, fibrad_workspace *space, 
     }
     /* before add_first_segment, which adds the same to all parts */
     const double paths_error = fibrad_min(carried, scale * spread_of_parts(&paths, weight));
-    add_first_segment(space, task->emissivity, &segment, scale * to_spheres);
+    add_first_segment(space, task->emissivity, &segment, scale * to_spheres, i, outside);
     if (space->entries.missed > 0) return fibrad_work_entries_missed(space);
     const double error = fibrad_sqrt(paths_error * paths_error + beam_error * beam_error) + lost_of(&paths, carried);
     if (!fibrad_finite(error + scale)) return FIBRAD_E_ARGUMENT; /* a number that a path met is not valid */

@@ -26,6 +26,8 @@
 /* Paths go on from known first segments in steps of this prime. So the first paths come from windows of all directions.
  */
 #define SEGMENT_STRIDE UINT64_C(2654435761)
+/* What a segment meets that begins inside another member of its clump. Nothing leaves there. */
+#define INSIDE_CLUMP (FIBRAD_NONE - 1)
 
 /* A path so far. */
 struct grey_path {
@@ -198,12 +200,13 @@ static void meet_known(const fibrad_paths *paths, const fibrad_segment *segment,
 static bool is_met_known(const fibrad_paths *paths, const fibrad_segment *segment) {
     const fibrad_scene *scene = paths->tracer->scene;
     if (segment == NULL || scene->clear != NULL) return false;
+    if (scene->clump != NULL && scene->clump[paths->place] != 0) return false; /* it may begin inside a member */
     return segment->open || (segment->sphere != FIBRAD_NONE && !scene->cut[segment->sphere]);
 }
 
 /* Moves a path along w to what it meets. Returns FIBRAD_NONE for a sphere, and the slot for a wall or a mesh.
- * FIBRAD_ESCAPED and FIBRAD_BEYOND: the path ends. A side that belongs to no wall counts as beyond. A ray is traced
- * unless `known` tells what the path meets. */
+ * FIBRAD_ESCAPED, FIBRAD_BEYOND and INSIDE_CLUMP: the path ends. A side that belongs to no wall counts as beyond. A ray
+ * is traced unless `known` tells what the path meets. */
 static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const double w[3],
                               const fibrad_segment *known) {
     const fibrad_scene *scene = paths->tracer->scene;
@@ -224,6 +227,9 @@ static uint32_t trace_segment(fibrad_paths *paths, struct grey_path *path, const
     } else {
         LANED(fibrad_trace_point)(scene, paths->tracer, path->point, w, path->triangle, &hit);
     }
+    if (hit.sphere != FIBRAD_NONE && path->place != FIBRAD_NONE && hit.distance == 0 &&
+        fibrad_one_clump(scene, path->place, hit.sphere))
+        return INSIDE_CLUMP;
     if (hit.sphere != FIBRAD_NONE && is_within(paths, path, w, hit.distance)) {
         for (int axis = 0; axis < 3 && path->place == FIBRAD_NONE; axis++) path->centre[axis] += path->point[axis];
         for (int axis = 0; axis < 3; axis++) {
@@ -318,7 +324,7 @@ static void follow_first_segment(fibrad_paths *paths, fibrad_segment *segment) {
     fibrad_copy(path.n, segment->n, sizeof path.n);
     const uint32_t met = trace_segment(paths, &path, segment->w, segment);
     segment->weight = 0;
-    if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) return;
+    if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND || met == INSIDE_CLUMP) return;
     absorb_at_surface(paths, &path, met, false);
     fibrad_copy(segment->n, path.n, sizeof segment->n);
     fibrad_copy(segment->w, path.point, sizeof segment->w);
@@ -397,6 +403,7 @@ static void follow_path(fibrad_paths *paths, uint64_t k, const uint32_t sobol[8]
     for (uint32_t segment = first; segment < PATH_SEGMENTS; segment++) {
         const bool counts = segment > 0 || paths->first;
         const uint32_t met = trace_segment(paths, &path, w, NULL);
+        if (met == INSIDE_CLUMP) return;
         if (met == FIBRAD_ESCAPED || met == FIBRAD_BEYOND) {
             if (counts) leave_scene(paths, &path, met);
             return;

@@ -541,7 +541,8 @@ static int note_inside(fibrad_scene *scene, uint32_t i, uint32_t j, double dista
     const inside_search *search = context;
     const double larger = fibrad_max(scene->r[i], scene->r[j]), part = distance / larger;
     const uint32_t pair[] = {scene->order[i], scene->order[j]};
-    if (!(part < 1 + INSIDE_SLACK) || fibrad_scene_id(scene, pair[0]) == fibrad_scene_id(scene, pair[1]))
+    if (!(part < 1 + INSIDE_SLACK) || fibrad_scene_id(scene, pair[0]) == fibrad_scene_id(scene, pair[1]) ||
+        fibrad_one_clump(scene, i, j))
         return FIBRAD_OK;
     for (int k = 0; k < 2; k++)
         if (part * (1 - INSIDE_SLACK) < search->part[pair[k]])

@@ -394,6 +394,68 @@ done
 run 2 contacts_moved contacts.lmp also "fix b all balance 10 1.0 shift y 10 1.01"
 near "$work/contacts1.out" "$work/contacts_moved.out" 1e-10 "contacts, balance during the run"
 
+# ---- clumps -----------------------------------------------------------------------------------------------------------
+# power_is NAME WATT ERROR WHAT: what the particles lose at first, to the surroundings
+power_is() {
+    found=$(awk '$1 == "Step" { getline; print substr($2, 2), $3, $4 }' "$work/$1.log")
+    echo "$found" | awk -v want="$2" -v error="$3" '{ off = $1/want - 1 } END { exit !(off*off < error*error && ($1 - $2)^2 < 1e-26*$1*$1 && $3 == 0) }'
+    verdict "$4 ($found)" $?
+}
+# two balls of radius 1, d apart, 1000 K, black: sigma T^4 A (1 - F), A = 2 pi (2 + d), 1 - F = 4 <shadow>/A
+lens() {
+    awk -v d="$1" 'BEGIN {
+        pi = atan2(0, -1)
+        for (k = 0; k < 20000; k++) {
+            x = d*sqrt(1 - ((k + .5)/20000)^2)
+            sum += 2*pi - 2*atan2(sqrt(4 - x*x), x) + x/2*sqrt(4 - x*x)
+        }
+        printf "%.10g", 4*sum/20000*5.670374419e-8*1e12 }'
+}
+for apart in 0.5 0.9 1.8; do
+    run 1 pair clumps.lmp apart $apart run 0
+    power_is pair "$(lens $apart)" 1e-6 "a black clump of two balls, $apart radii apart"
+done
+for e in 1 .6 .3; do
+    printf '%s\n' x,y,z,r,mol,T 0,0,0,1,7,1000 .9,0,0,1,7,1000 .3,.8,0,1,7,1000 .4,-2.3,.4,.8,0,400 .4,.1,3,.8,0,400 >"$work/clumps.csv"
+    "$BUILD/fibrad" heat "$work/clumps.csv" --clump mol --temperature T --emissivity $e --ambient 0 --error 0.0003 -o "$work/heat.csv" >"$work/heat.log" 2>&1
+    run 1 three clumps.lmp more yes e $e run 0
+    power_is three "$(awk -F, '$1 == -1 { print $3 }' "$work/heat.csv")" 5e-4 "a clump of three of emissivity $e beside balls, as by fibrad heat"
+done
+floor="wall zmin temperature 900 emissivity .7 at -1.6 wall zmax open wall xmin insulated wall xmax open wall ymin open wall ymax open"
+for words in "accuracy high" "accuracy low convection 20 500" "$floor" "cutoff 8"; do
+    for np in 1 2 4; do
+        run $np clumps$np clumps.lmp more yes e .6 words "clump mol $words"
+        cmp "$work/clumps1.out" "$work/clumps$np.out"
+        verdict "clumps with ${words%%zmax*}, np $np: the same bits" $?
+        awk 'NF == 2 && $1 > 0 && $1 < 4 { n++; if (n > 1 && $2 != t) bad = 1; t = $2 } END { exit !(n == 3 && t < 1000 && !bad) }' "$work/clumps$np.out"
+        verdict "clumps with ${words%%zmax*}, np $np: one temperature" $?
+    done
+done
+for np in 1 2; do
+    run $np rigid$np rigid.lmp
+    found=$(awk '$1 == "Step" { on = 1; next } /^Loop/ { on = 0 }
+        on && /^ *[0-9]/ { if (n++) gained += .02*($4 + $5); else first = $2; last = $2; off = $3 + $4 + $5; if (off*off > 1e-26*($4*$4 + $5*$5)) bad = 1 }
+        END { error = (last - first + gained)/last; printf "%.2g", error; exit !(n == 51 && !bad && error*error < 1e-26 && last < .999*first) }' "$work/rigid$np.log")
+    verdict "clumps that fall, np $np: energy ($found)" $?
+    awk 'NF == 2 && /^[0-9]+ [0-9.]+$/ { if ($1 in t && t[$1] != $2) bad = 1; t[$1] = $2; n++ } END { exit !(n == 20 && !bad) }' "$work/rigid$np.out.mol"
+    verdict "clumps that fall, np $np: one temperature each" $?
+done
+near "$work/rigid1.out" "$work/rigid2.out" 1e-6 "clumps that fall, np 1 and 2"
+# wrong NAME MESSAGE [NAME VALUE]...: a run of clumps ends with this message
+wrong() {
+    local what=$1
+    shift
+    run 2 wrong clumps.lmp more yes "$@" && false
+    cat "$work/wrong.err" "$work/wrong.log" | grep -q "^ERROR.*$what"
+    verdict "clumps: $what" $?
+}
+wrong "particle 2: the members of its clump 7 have different temperatures" also "set atom 2 d_T 900"
+wrong "particle 2: the members of its clump 7 have different emissivities" also "set atom 2 type 2" e "type .6 .5"
+wrong "leave out .contacts" words "clump mol contacts 4"
+wrong "without .solid" words "clump mol solid 4"
+wrong "followed by mol" words "clump d_T"
+wrong "the time step must be at most" also "timestep 1e6"
+
 # ---- gas ----------------------------------------------------------------------------------------------------------------
 # explicit steps of heat: each leaves 1 - h A t/C of the difference
 awk -v OFMT=%.17g 'BEGIN {

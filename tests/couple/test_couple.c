@@ -740,7 +740,7 @@ static void *grow(void *context, void *block, size_t size) {
 static void step_by_kernel(struct pile *p) {
     const uint32_t n = (uint32_t)p->bed.n, walls = p->bed.walls;
     const fibrad_scene_config config = {.wall = p->wall, .walls = walls};
-    const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id};
+    const fibrad_spheres spheres = {p->x, p->x + 1, p->x + 2, p->radius, n, 3, 1, p->id, NULL};
     const size_t size = fibrad_scene_size(n, 1);
     FREED void *block = memory_of(size, 1);
     fibrad_scene *scene = NULL;

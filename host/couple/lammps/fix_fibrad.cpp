@@ -84,8 +84,8 @@ int FixFibrad::count(const char *what, int low) {
 
 FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
     : Fix(lammps, narg, arg), word(arg + 3, arg + narg), at(0), temperature(), kept_bit(0), errors(false), columns(1),
-      moved(0), initial(0), radiation(), moving(false), set_up(-1), powers_at(0), lost(0), restarted(false), begun(0),
-      before() {
+      moved(0), initial(0), radiation(), moving(false), clumps(false), set_up(-1), powers_at(0), lost(0),
+      restarted(false), begun(0), before() {
     const double huge = 1e300;
     radiation.config.seed = 1; // the default of docs/lammps.md
     radiation.surroundings = NAN;
@@ -127,6 +127,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
             read_temperature();
         else if (key == "group2")
             read_group();
+        else if (key == "clump")
+            read_clumps();
         else if (key == "initial")
             initial = number("the initial temperature", 0, huge);
         else if (key == "sigma")
@@ -146,6 +148,8 @@ FixFibrad::FixFibrad(LAMMPS *lammps, int narg, char **arg)
           errors ? "errors" : "", moved > 0 ? "moved" : "", emissivity.table.empty() ? "" : "@FILE"})
         if (*needs && !heat_every) stop(text("`%s` needs temperatures: NEVERY must be above 0", needs));
     if (solid.given() && contact.given()) stop("`contacts` needs particles of one temperature each, without `solid`");
+    if (clumps && solid.given()) stop("`clump` needs particles of one temperature each, without `solid`");
+    if (clumps && contact.given()) stop("`contacts` between clumps are not computed: leave out `contacts`");
     if (!known_units && heat_every && radiation.sigma == 0)
         stop(std::string("units ") + update->unit_style +
              " need `sigma S`, the Stefan-Boltzmann constant in energy/(time length^2 K^4)");
@@ -193,6 +197,12 @@ void FixFibrad::read_group() {
     const int number = group->find(name);
     if (number < 0) stop("there is no group `" + name + "`");
     kept_bit = group->bitmask[number];
+}
+
+// mol
+void FixFibrad::read_clumps() {
+    if (next() != "mol") stop("`clump` is followed by mol, not `" + word[at - 1] + "`");
+    clumps = true;
 }
 
 // T | v_NAME
@@ -335,6 +345,7 @@ void FixFibrad::init() {
     if (shape) stop(std::string("particles must be spheres, and atom_style ") + shape + " has others");
     if (!atom->radius) stop("particles need radii (atom_style sphere)");
     if (!atom->tag_enable) stop("atoms need ids");
+    if (clumps && !atom->molecule_flag) stop("`clump mol` needs molecule ids: fix ID all property/atom mol");
     if (domain->dimension != 3) stop("the dimension must be 3");
     if (domain->triclinic) stop("the box must not be triclinic");
     if (strstr(update->integrate_style, "respa")) stop("run_style must be verlet");
@@ -348,6 +359,11 @@ void FixFibrad::init() {
 
     if (temperature.empty()) temperature = known("temperature") && known("heatflow") ? "temperature" : "d_T";
     need(temperature);
+    if (clumps && temperature == "temperature")
+        stop("`clump` needs temperatures that this fix steps: fix ID all property/atom d_T, and `temperature d_T`");
+    for (size_t type = 1; clumps && type < cp.table.size(); type++)
+        if (cp.table[type].kelvin != cp.table[1].kelvin || cp.table[type].value != cp.table[1].value)
+            stop("`clump` needs one table of cp for all types");
     if (temperature != "temperature") {
         if (!cp.given()) stop("`cp C`, heat per mass and kelvin, is missing");
         if (!cp.of_atom.empty()) need(cp.of_atom);
@@ -451,25 +467,46 @@ void FixFibrad::end_of_step() {
     find_powers();
     if (temperature == "temperature") return;
     radiation_heat_walls(&radiation, update->dt * heat_every);
+    step_temperatures(update->dt * heat_every);
+}
+
+// Gives atoms, or clumps as a whole, the heat of a step. A clump with an atom that keeps its temperature keeps its own.
+void FixFibrad::step_temperatures(double seconds) {
     double *t = vector(temperature);
-    const std::vector<double> capacity = values(cp);
+    const std::vector<double> each = values(cp);
+    std::vector<double> step; // temperature, heat, mass, capacity of each member
     for (size_t k = 0; k < member.size(); k++) {
         const int i = member[k];
-        if (!(atom->mask[i] & groupbit)) continue;
-        const double heat = q[i * columns] * update->dt * heat_every;
-        const Table *table = cp.table.empty() ? nullptr : &cp.table[atom->type[i]];
-        const curve points = table ? table->points() : curve();
-        t[i] = points.n ? curve_advance(&points, t[i], heat / mass(i)) : t[i] + heat / (mass(i) * capacity[k]);
+        const double m = atom->mask[i] & groupbit ? mass(i) : HUGE_VAL;
+        step.insert(step.end(), {t[i], q[i * columns] * seconds, m, m * each[k]});
+    }
+    fibrad_insitu_bed bed = {};
+    bed.n = member.size(), bed.id = tags.data(), bed.clump = clump.data();
+    if (clumps) need_good(radiation_sums(&radiation, &bed, step.data(), 4));
+    for (size_t k = 0; k < member.size(); k++) {
+        const int i = member[k];
+        const double *of = &step[4 * k];
+        if (!(of[2] < HUGE_VAL)) continue;
+        const curve points = cp.table.empty() ? curve() : cp.table[atom->type[i]].points();
+        t[i] = points.n ? curve_advance(&points, of[0], of[1] / of[2]) : of[0] + of[1] / of[3];
     }
 }
 
 void FixFibrad::select() {
     member.clear();
     tags.clear();
+    clump.clear();
+    clump.reserve(1); // it is not NULL on ranks without atoms
     for (int i = 0; i < atom->nlocal; i++)
         if (takes_part(i)) {
             member.push_back(i);
             tags.push_back((uint64_t)atom->tag[i]);
+            if (!clumps) continue;
+            const int64_t molecule = atom->molecule[i];
+            if (molecule < 0 || molecule > UINT32_MAX)
+                error->one(FLERR, text("fix fibrad: the molecule id %lld of atom %lld is not in [0, %u]",
+                                       (long long)molecule, (long long)atom->tag[i], UINT32_MAX));
+            clump.push_back((uint32_t)molecule);
         }
 }
 
@@ -502,6 +539,7 @@ FixFibrad::Bed FixFibrad::present_bed() {
     b.bed.x = b.x.data();
     b.bed.radius = b.radius.data();
     b.bed.emissivity = b.emissivity.data();
+    b.bed.clump = clumps ? clump.data() : nullptr;
     b.bed.conductivity = solid.given() ? b.conductivity.data() : nullptr;
     return b;
 }
@@ -627,6 +665,7 @@ void FixFibrad::find_powers() {
     std::vector<double> power(member.size()), conductance(member.size()), capacity = values(cp);
     check_values(t);
     const Bed present = present_bed();
+    if (clumps) need_good(radiation_agree(&radiation, &present.bed, t.data(), "temperatures"));
     capacity.resize(member.size(), HUGE_VAL);
     for (size_t m = 0; m < member.size(); m++)
         capacity[m] = atom->mask[member[m]] & groupbit ? capacity[m] * mass(member[m]) : HUGE_VAL;

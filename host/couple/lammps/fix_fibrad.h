@@ -86,6 +86,7 @@ class FixFibrad : public Fix {
     void read_contacts();
     Property read_film(const char *what, double high, bool number_follows);
     void read_option(const std::string &key);
+    void read_clumps();
 
     // Vectors of atoms, of LAMMPS or of fix property/atom.
     double *vector(const std::string &name);      // NULL: there is no such vector, or this rank has no atoms
@@ -111,6 +112,7 @@ class FixFibrad : public Fix {
     void make_rows(bool by_motion = false);
     void find_powers();
     void find_errors();
+    void step_temperatures(double seconds);
     void follow_heatflow();
     void check_values(const std::vector<double> &temperature); // refuses what is not set
     void list_output();
@@ -140,6 +142,7 @@ class FixFibrad : public Fix {
     std::vector<std::string> variables; // [walls] the same of walls
     std::vector<mesh_motion> motions;   // [meshes]
     bool moving;                        // whether a mesh moves
+    bool clumps;                        // whether molecules are clumps
 
     // State.
     std::vector<double> q;       // [nmax][columns], power of each atom; then its errors
@@ -147,6 +150,7 @@ class FixFibrad : public Fix {
     std::vector<double> rows_x;  // [nmax][3], where each atom was when its row was made
     std::vector<int> member;     // atoms of the group that this rank owns
     std::vector<uint64_t> tags;  // [member], their ids
+    std::vector<uint32_t> clump; // [member], their molecules, if these are clumps
     bigint set_up;               // step of the last setup
     bigint powers_at;            // step of the last powers
     double lost;                 // time that LAMMPS' clock does not count, since it began anew after a restart

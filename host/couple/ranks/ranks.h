@@ -95,14 +95,18 @@ typedef struct fibrad_particle {
         double node;        /* the emissivity of the node, fibrad_node_emissivity */
         double temperature; /* K, of contacts */
     };
+    uint64_t clump;     /* 0: it is alone */
+    double exposed;     /* L^2, area that no other member of its clump hides, when its row was made */
     fibrad_place owner; /* set by fibrad_halo and fibrad_gather: where its owner has it */
 } fibrad_particle;
 
-/* Particles as spheres. id: out, [n]; NULL: they get no ids */
-static inline fibrad_spheres fibrad_particle_spheres(const fibrad_particle *p, size_t n, uint64_t *id) {
+/* Particles as spheres. id, clump: out, [n]; NULL: they get none */
+static inline fibrad_spheres fibrad_particle_spheres(const fibrad_particle *p, size_t n, uint64_t *id,
+                                                     uint32_t *clump) {
     const uint32_t stride = sizeof *p / sizeof(double);
     for (size_t i = 0; i < n && id; ++i) id[i] = p[i].id;
-    return (fibrad_spheres){&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id, NULL};
+    for (size_t i = 0; i < n && clump; ++i) clump[i] = (uint32_t)p[i].clump;
+    return (fibrad_spheres){&p->x[0], &p->x[1], &p->x[2], &p->radius, (uint32_t)n, stride, stride, id, clump};
 }
 
 /* Collective. Appends to particle[own] the particles of other ranks, and the periodic images of particles of all ranks,

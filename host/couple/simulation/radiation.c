@@ -287,9 +287,47 @@ bool radiation_check(struct radiation *r, const fibrad_insitu_bed *bed) {
 
 bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t step, bool follow) {
     r->place_meshes(r->simulation);
+    if (bed->clump && !radiation_agree(r, bed, bed->emissivity, "emissivities")) return false;
     if (mesh_walls_face(&r->meshes, r->comm, bed)) return refuse(r, "out of memory");
     *(follow ? &r->rows_followed : &r->rows_made) += 1;
     return take(r, (follow ? fibrad_insitu_follow : fibrad_insitu_rows)(r->insitu, bed, step), step);
+}
+
+bool radiation_sums(struct radiation *r, const fibrad_insitu_bed *bed, double *value, int width) {
+    const int status = fibrad_clump_sums(r->comm, bed->clump, bed->id, bed->n, value, width);
+    return !status || refuse(r, "out of memory");
+}
+
+bool radiation_agree(struct radiation *r, const fibrad_insitu_bed *bed, const double *value, const char *values) {
+    double *first = malloc((2 * bed->n + 1) * sizeof *first);
+    uint64_t least = UINT64_MAX, clump = 0;
+    int status = fibrad_agree(r->comm, first ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    for (size_t i = 0; i < bed->n && !status; ++i) first[2 * i] = value[i], first[2 * i + 1] = 0;
+    if (!status) status = fibrad_clump_sums(r->comm, bed->clump, bed->id, bed->n, first, 2);
+    for (size_t i = 0; i < bed->n && !status; ++i)
+        if (first[2 * i] != value[i] && bed->id[i] < least) least = bed->id[i], clump = bed->clump[i];
+    free(first);
+    if (status) return refuse(r, "out of memory");
+    const uint64_t own = least;
+    MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_UINT64_T, MPI_MIN, r->comm);
+    if (own != least) clump = 0;
+    MPI_Allreduce(MPI_IN_PLACE, &clump, 1, MPI_UINT64_T, MPI_MAX, r->comm);
+    if (least == UINT64_MAX) return true;
+    return refuse(r, "particle %" PRIu64 ": the members of its clump %" PRIu64 " have different %s", least, clump,
+                  values);
+}
+
+static double area_of(const struct radiation *r, const fibrad_insitu_bed *bed, size_t i) {
+    return bed->clump ? r->area[i] : 4 * acos(-1) * bed->radius[i] * bed->radius[i];
+}
+
+/* Finds the exposed areas of the particles of the last powers. */
+static int find_areas(struct radiation *r, const fibrad_insitu_bed *bed) {
+    double *area = realloc(r->area, (bed->n + 1) * sizeof *area);
+    if (area) r->area = area;
+    const int status = fibrad_agree(r->comm, area ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    for (size_t i = 0; i < bed->n && !status; ++i) area[i] = 4 * acos(-1) * bed->radius[i] * bed->radius[i];
+    return status ? status : fibrad_insitu_exposed(r->insitu, bed->clump, area);
 }
 
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,
@@ -303,6 +341,7 @@ bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const d
         status = fibrad_insitu_powers(r->insitu, &state, power, &r->totals);
     }
     r->powers_found++;
+    if (!status && bed->clump) status = find_areas(r, bed);
     for (size_t i = 0; i < bed->n; ++i) conductance[i] = 0;
     if (!take(r, status, step) || !r->conducts) return !status;
     double *through = malloc((bed->n + 1) * sizeof *through);
@@ -339,11 +378,20 @@ bool radiation_stable(struct radiation *r, const fibrad_insitu_bed *bed, const d
     uint64_t id = 0;
     char what[MESH_NAME + 16];
     MPI_Comm_rank(r->comm, &worst.rank);
-    for (size_t i = 0; i < bed->n; ++i) {
-        const double t = temperature[i], area = 4 * acos(-1) * bed->radius[i] * bed->radius[i];
+    double(*sum)[3] = malloc((bed->n + 1) * sizeof *sum); /* unused, gain, capacity */
+    int status = fibrad_agree(r->comm, sum ? FIBRAD_OK : FIBRAD_E_MEMORY, NULL);
+    for (size_t i = 0; i < bed->n && !status; ++i) {
+        const double t = temperature[i], area = area_of(r, bed, i);
         const double gain = 4 * r->sigma * t * t * t * area * bed->emissivity[i] + 2 * conductance[i];
-        if (gain * seconds / capacity[i] > worst.ratio) worst.ratio = gain * seconds / capacity[i], id = bed->id[i];
+        sum[i][0] = 0, sum[i][1] = gain, sum[i][2] = capacity[i];
     }
+    if (!status && bed->clump) status = fibrad_clump_sums(r->comm, bed->clump, bed->id, bed->n, *sum, 3);
+    for (size_t i = 0; i < bed->n && !status; ++i) {
+        const double ratio = sum[i][1] * seconds / sum[i][2];
+        if (ratio > worst.ratio) worst.ratio = ratio, id = bed->id[i];
+    }
+    free(sum);
+    if (status) return refuse(r, "out of memory");
     MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, r->comm);
     MPI_Bcast(&id, 1, MPI_UINT64_T, worst.rank, r->comm);
     snprintf(what, sizeof what, "particle %" PRIu64, id);
@@ -364,7 +412,7 @@ bool radiation_convect(struct radiation *r, const fibrad_insitu_bed *bed, const 
                        const double *coefficient, const double *gas, double *power, double *conductance) {
     double fault[3] = {0}, sums[2] = {0}; /* id, coefficient and gas of the particle at fault; its id, and the power */
     for (size_t i = 0; i < bed->n; ++i) {
-        const double film = coefficient[i] * 4 * acos(-1) * bed->radius[i] * bed->radius[i];
+        const double film = coefficient[i] * area_of(r, bed, i);
         const double gain = film * (gas[i] - temperature[i]);
         const bool good =
             film >= 0 && film <= FIBRAD_CONDUCTANCE_MAX && gas[i] >= 0 && gas[i] <= FIBRAD_TEMPERATURE_MAX;
@@ -393,6 +441,7 @@ void radiation_heat_walls(struct radiation *r, double seconds) {
 
 void radiation_free(struct radiation *r) {
     fibrad_insitu_free(r->insitu);
+    free(r->area);
     mesh_walls_free(&r->meshes);
     curve_free(&r->gas);
 }

@@ -55,6 +55,7 @@ struct radiation {
     fibrad_insitu_totals totals;       /* of the last powers, by radiation */
     fibrad_insitu_conducted conducted; /* of the same, through contacts */
     double convected;                  /* what the gas has brought to particles with them */
+    double *area;                      /* L^2, [n], exposed, of beds with clumps; NULL: there are none */
     int rows_made, rows_followed, powers_found;
     bool told[FIBRAD_REMARKS], told_parts;
     char fault[2 * WALL_FAULT];
@@ -114,6 +115,12 @@ bool radiation_rows(struct radiation *r, const fibrad_insitu_bed *bed, uint64_t 
 bool radiation_powers(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature, uint64_t step,
                       const double *solid, const double *capacity, double seconds, double *power, double *conductance);
 
+/* Sums up members of clumps, as fibrad_clump_sums. bed: n, id and clump are used. */
+bool radiation_sums(struct radiation *r, const fibrad_insitu_bed *bed, double *value, int width);
+
+/* Refuses a clump whose members have different values. values, as a sentence calls them: "temperatures" */
+bool radiation_agree(struct radiation *r, const fibrad_insitu_bed *bed, const double *value, const char *values);
+
 /* Adds to power[n] what gas of the temperatures gas[n] brings, with heat transfer coefficients [n], and to
  * conductance[n] half of what this is for each kelvin: the gas follows no particle. */
 bool radiation_convect(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature,
@@ -121,8 +128,8 @@ bool radiation_convect(struct radiation *r, const fibrad_insitu_bed *bed, const 
 
 /* Checks that steps of `seconds` for heat are stable: (4 sigma T^3 A e + 2 H) seconds < C, H the conductance of the
  * contacts and half of that to gas. So no particle and no wall overshoots its surroundings, and no difference of
- * temperatures changes its sign. capacity: [n] C of particles; infinite: not checked. every: time steps of a step of
- * heat. */
+ * temperatures changes its sign. A clump is one particle. capacity: [n] C of particles; infinite: not checked. every:
+ * time steps of a step of heat. */
 bool radiation_stable(struct radiation *r, const fibrad_insitu_bed *bed, const double *temperature,
                       const double *capacity, const double *conductance, double seconds, long every);
 
