@@ -77,7 +77,7 @@ HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/% tables/%),$
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 # other machines, and what takes long: `make nightly`
-NIGHTLY := tests/check_dist.sh tests/package/check_deb.sh tests/check_tables.sh tests/check_yade.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
+NIGHTLY := tests/check_dist.sh tests/package/check_deb.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
            tests/test_furnace.c tests/test_reproduce.c
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
@@ -460,7 +460,7 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/package/check_deb.sh
 	BUILD=$(BUILD) tests/check_tables.sh all
-	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/check_yade.sh
+	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)"
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
 	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
 	$(MAKE) test-couple

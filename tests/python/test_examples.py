@@ -99,29 +99,49 @@ def test_ovito_modifier(small, examples):
         modify(0, data)
 
 
+class Bodies(dict):
+    """Bodies by their ids, of which a loop gives the bodies, as O.bodies of YADE."""
+
+    def __iter__(self):
+        return iter(list(self.values()))
+
+
 def test_yade_runner_with_a_stand_in(small, examples):
-    """Bodies with the attributes that YADE's have, one of them no sphere."""
-    class Sphere:
-        def __init__(self, radius):
-            self.radius = radius
+    """Bodies with the attributes that YADE's have: spheres, a clump of two, a wall, a facet."""
+    class Shape(SimpleNamespace):
+        pass
 
-    def body(i):
-        state = SimpleNamespace(pos=tuple(small.x[i]), mass=0.01)
-        return SimpleNamespace(id=3 * i, shape=Sphere(small.r[i]), state=state)
+    class Sphere(Shape):
+        pass
 
-    wall = SimpleNamespace(id=1, shape=None, state=SimpleNamespace(pos=(0, 0, 0), mass=0))
-    scene = SimpleNamespace(bodies=[wall, *map(body, range(small.n))], periodic=True, time=0.0,
+    class Wall(Shape):
+        pass
+
+    class Facet(Shape):
+        pass
+
+    def body(number, shape, pos=(0.0, 0.0, 0.0), mass=0.01, clump=-1):
+        state = SimpleNamespace(pos=np.array(pos), mass=mass, ori=np.eye(1)[0, 0])
+        return SimpleNamespace(id=number, shape=shape, state=state, isClumpMember=clump not in (-1, number),
+                               isClump=clump == number, clumpId=clump)
+
+    floor, joined = body(1, Wall(axis=2)), body(2, None, mass=0.02, clump=2)
+    facet = body(4, Facet(vertices=[np.array(v) for v in ((2.0, 2, 9), (4, 2, 9), (2, 4, 9))]))
+    spheres = [body(3 * i + 6, Sphere(radius=small.r[i]), small.x[i], clump=2 if i < 2 else -1) for i in range(small.n)]
+    scene = SimpleNamespace(bodies=Bodies((b.id, b) for b in (floor, joined, facet, *spheres)), periodic=True, time=0.0,
                             cell=SimpleNamespace(size=(12.0, 12.0, 0.0)))
-    names = runpy.run_path(str(examples / "yade_radiation.py"), {"O": scene, "Sphere": Sphere}, "yade_radiation")
+    names = runpy.run_path(str(examples / "yade_radiation.py"), {"O": scene, "Sphere": Sphere, "Wall": Wall, "Facet": Facet},
+                           "yade_radiation")
     radiate = names["radiate"]
     state = radiate.__globals__
     radiate()
     assert set(state["temperature"].values()) == {300.0} and state["bed"].n == small.n
+    assert set(state["temperature"]) == {2, *(b.id for b in spheres[2:])}
     first, scene.time = state["bed"], 1e-6
     radiate()
-    stored = sum(0.01 * 800 * (t - 300) for t in state["temperature"].values())
+    stored = sum(scene.bodies[i].state.mass * 800 * (t - 300) for i, t in state["temperature"].items())
     assert state["absorbed"] == pytest.approx(stored, rel=1e-6) and state["absorbed"] > 0 and state["bed"] is first
-    scene.bodies.pop()
+    del scene.bodies[spheres[-1].id]
     radiate()
     assert state["bed"].n == small.n - 1
 
@@ -132,7 +152,7 @@ def test_yade_runner(examples, tmp_path):
     places = os.path.dirname(os.path.dirname(fibrad.__file__))
     run = subprocess.run(["yade", "-n", "-x", examples / "yade_radiation.py"], cwd=tmp_path, check=False, text=True,
                          env={**os.environ, "PYTHONPATH": places}, capture_output=True)
-    found = re.search(r"48 spheres, (\S+) to (\S+) K, absorbed (\S+) J, stored (\S+) J", run.stdout)
+    found = re.search(r"52 spheres and clumps, (\S+) to (\S+) K, absorbed (\S+) J, stored (\S+) J", run.stdout)
     assert found, run.stdout + run.stderr
     coldest, hottest, absorbed, stored = map(float, found.groups())
     assert 300 < coldest < hottest < 1000 and absorbed == pytest.approx(stored, rel=1e-6)
