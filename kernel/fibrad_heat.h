@@ -96,9 +96,10 @@ int fibrad_heat_trace(fibrad_heat *heat, fibrad_work *work, uint32_t task);
 
 /* Gas that flows past the spheres. It goes through slices in turn, and each slice has one temperature:
  *
- *     heat content that leaves - heat content that enters = sum over the slice of film (T - T_gas)
+ *     content that leaves - content that enters = sum over the slice of film (T - T_gas).
  *
- * The heat content is the integral of `capacity`, which is linear between its points and constant beyond them. */
+ * The content is the integral of `capacity` over T. `capacity` is linear between its points and constant beyond them.
+ */
 typedef struct fibrad_stream {
     const uint32_t *slice;  /* [spheres], below `slices`; 0: the slice that the gas enters first */
     const double *at;       /* K, [points], ascending */

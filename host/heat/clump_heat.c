@@ -26,11 +26,13 @@ void clumps_free(struct clump_state *state) {
 }
 
 double heat_area(const struct heat *h, uint32_t i) {
-    return h->clumps.area ? h->clumps.area[i] : 4 * M_PI * gsl_pow_2(h->bed->r[i]);
+    const double metres = h->bed->metres;
+    return h->clumps.area ? h->clumps.area[i] * gsl_pow_2(metres) : 4 * M_PI * gsl_pow_2(h->bed->r[i] * metres);
 }
 
 double heat_volume(const struct heat *h, uint32_t i) {
-    return h->clumps.area ? h->clumps.volume[i] : 4. / 3 * M_PI * gsl_pow_3(h->bed->r[i]);
+    const double metres = h->bed->metres;
+    return h->clumps.area ? h->clumps.volume[i] * gsl_pow_3(metres) : 4. / 3 * M_PI * gsl_pow_3(h->bed->r[i] * metres);
 }
 
 /* Adds the result of sphere i to its body. If the temperature was found, the power of the body is given. */

@@ -100,9 +100,7 @@ static int find_sphere_films(struct heat *h) {
         status = quantity_values(&h->film.gas, bed, h->options.name, "temperature of the gas in kelvins", h->given.zero,
                                  0, TEMPERATURE_MAX, &films->gas);
     if (!status && h->film.correlation) status = stream_coefficients(h, films->film);
-    for (uint32_t i = 0; i < bed->n && !status; ++i)
-        films->film[i] *= h->clumps.area ? heat_area(h, i) * gsl_pow_2(bed->metres) * films->per_watt
-                                         : 4 * M_PI * gsl_pow_2(bed->r[i] * bed->metres) * films->per_watt;
+    for (uint32_t i = 0; i < bed->n && !status; ++i) films->film[i] *= heat_area(h, i) * films->per_watt;
     return status;
 }
 

@@ -434,7 +434,7 @@ void film_report(struct heat *heat);
 int clumps_begin(struct heat *heat);
 void clumps_free(struct clump_state *state);
 
-/* The surface [L^2] and the volume [L^3] of sphere i. */
+/* The surface [m2] and the volume [m3] of sphere i. */
 double heat_area(const struct heat *heat, uint32_t i);
 double heat_volume(const struct heat *heat, uint32_t i);
 

@@ -45,7 +45,7 @@ void heat_find_figures(struct heat *h) {
         const double power = result->power[i], not_radiated = (result->conducted ? result->conducted[i] : 0) +
                                                               (result->convected ? result->convected[i] : 0);
         const double emissivity = h->emissivity[i], r = h->bed->r[i];
-        const double part = h->clumps.area ? heat_area(h, i) / (4 * M_PI * r * r) : 1;
+        const double part = h->clumps.area ? h->clumps.area[i] / (4 * M_PI * r * r) : 1;
         const double emitted =
             emissivity > 0 ? part * (sphere * r * r * emissivity * pow(result->temperature[i], 4)) : 0;
         const double through = fmax(emitted, emitted + power - not_radiated);

@@ -230,7 +230,7 @@ static int find_capacities(struct time_run *m, double **capacity) {
         if (h->conductivity && !held) m->lag = fmax(m->lag, r * r * store / (M_PI * M_PI * h->conductivity[i]));
         (*capacity)[i] = m->store && !held ? density[i] : store;
         if (h->clumps.area)
-            (*capacity)[i] *= heat_volume(h, i) * gsl_pow_3(h->bed->metres);
+            (*capacity)[i] *= heat_volume(h, i);
         else
             (*capacity)[i] = (*capacity)[i] * (4. / 3 * M_PI) * gsl_pow_3(r);
     }

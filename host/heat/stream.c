@@ -130,9 +130,7 @@ int stream_begin(struct heat *h) {
 static double void_fraction(const struct heat *h) {
     double end[2], solid = 0;
     find_ends(h->bed, h->film.axis, end);
-    for (uint32_t i = 0; i < h->bed->n; ++i)
-        solid += h->clumps.area ? heat_volume(h, i) * gsl_pow_3(h->bed->metres)
-                                : 4. / 3 * M_PI * gsl_pow_3(h->bed->r[i] * h->bed->metres);
+    for (uint32_t i = 0; i < h->bed->n; ++i) solid += heat_volume(h, i);
     return 1 - solid / (h->films.section * (end[1] - end[0]) * h->bed->metres);
 }
 
@@ -177,7 +175,7 @@ void stream_report(struct heat *h) {
     double mean = 0, area = 0;
     if (films->stream.slices == 0) return;
     for (uint32_t i = 0; i < h->bed->n && films->film; ++i)
-        mean += films->film[i] / films->per_watt, area += heat_area(h, i) * gsl_pow_2(h->bed->metres);
+        mean += films->film[i] / films->per_watt, area += heat_area(h, i);
     if (h->film.correlation) report_value(report, "convection_W_m2K", mean / area, 6);
     report_count(report, "gas_slices", films->stream.slices);
     report_value(report, "gas_section_m2", films->section, 6);
