@@ -301,7 +301,8 @@ typedef enum fibrad_why {
     FIBRAD_WHY_REFLECTS = 10,     /* A surface of emissivity 0 cannot give off a power. */
     FIBRAD_WHY_STORAGE = 11,      /* `storage` or `reference` (fibrad_heat.h) is out of range. */
     FIBRAD_WHY_ENDLESS = 12,      /* The temperature of an endless wall of emissivity above 0 is missing. */
-    FIBRAD_WHY_SIDE = 13,         /* The temperature of a side is out of range, or its wall has no temperature. */
+    FIBRAD_WHY_SIDE = 13,         /* The temperature, film or power of a side is out of range, or its wall has no
+                                     temperature; or the side has a temperature and one of the others. */
     FIBRAD_WHY_SURROUNDINGS = 14, /* The temperature of the surroundings is missing or out of range. */
     FIBRAD_WHY_SIGMA = 15,        /* sigma is out of range. */
     FIBRAD_WHY_TOLERANCE = 16,    /* A tolerance is out of range. */

@@ -46,6 +46,9 @@ struct stepper {
     double *stage_walls[2], to_surroundings[2], to_gas[2],
         to_held[2];            /* powers of walls [walls], surroundings, gas, held spheres in each stage */
     fibrad_sections *sections; /* [span->stores] */
+    size_t sides;              /* 2 triangles; 0: nothing is wanted of sides or of convection */
+    double *side_temperature, *side_gas, *side_flux, *side_found, *side_energy; /* [sides], fluxes of two stages */
+    double *convected, *convected_energy;                                       /* [spheres], the first of two stages */
 };
 
 static double power_of(const struct stepper *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
@@ -67,9 +70,28 @@ static double heat_at(const struct stepper *m, uint32_t i, double temperature, d
     return fibrad_sections_heat(&m->sections[m->span->store_of ? m->span->store_of[i] : 0], temperature, melted);
 }
 
+/* The area of a triangle of a bed. */
+static double area_of_triangle(const fibrad_triangles *mesh, size_t t) {
+    const double *const at[] = {mesh->x, mesh->y, mesh->z};
+    const uint32_t *corner = mesh->corner + 3 * t;
+    double u[3], v[3], square = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        u[axis] = at[axis][corner[1]] - at[axis][corner[0]], v[axis] = at[axis][corner[2]] - at[axis][corner[0]];
+    for (int axis = 0; axis < 3; ++axis) {
+        const double normal = u[(axis + 1) % 3] * v[(axis + 2) % 3] - u[(axis + 2) % 3] * v[(axis + 1) % 3];
+        square += normal * normal;
+    }
+    return sqrt(square) / 2;
+}
+
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
-/* Sets the temperatures of walls, surroundings and gas at a time since the beginning of the span. */
+/* The same of what may be missing at the beginning. */
+static double value_between(const double *from, const double *to, size_t k, double share) {
+    return from && !isnan(from[k]) ? share_between(from[k], to[k], share) : to[k];
+}
+
+/* Sets the temperatures of walls, sides, surroundings and gas at a time since the beginning of the span. */
 static void set_outside(struct stepper *m, double time) {
     const double share = time / m->span->duration;
     const fibrad_span *span = m->span;
@@ -83,6 +105,10 @@ static void set_outside(struct stepper *m, double time) {
     for (uint32_t b = 0; m->given->wall_gas && b < m->bed->facts.walls; ++b)
         m->t->wall_gas[b] =
             span->wall_gas ? share_between(m->given->wall_gas[b], span->wall_gas[b], share) : m->given->wall_gas[b];
+    for (size_t k = 0; span->side_temperature && k < m->sides; ++k)
+        m->side_temperature[k] = value_between(m->given->side_temperature, span->side_temperature, k, share);
+    for (size_t k = 0; span->side_gas && k < m->sides; ++k)
+        m->side_gas[k] = value_between(m->given->side_gas, span->side_gas, k, share);
     if (span->inlet) m->stream.inlet = share_between(m->given->stream->inlet, *span->inlet, share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
@@ -258,6 +284,7 @@ static int solve_stage(struct stepper *m, int stage, double time, double length)
     fibrad_stepping *t = m->t;
     set_outside(m, time);
     m->result.wall_power = m->stage_walls[stage];
+    if (m->convected) m->result.convected = m->convected + (size_t)stage * m->bed->facts.spheres;
     for (int k = 0; k < NEWTON_MAX; ++k) {
         set_surfaces(m);
         find_conducts(m);
@@ -272,6 +299,8 @@ static int solve_stage(struct stepper *m, int stage, double time, double length)
         m->to_held[stage] = 0;
         for (uint32_t i = 0; i < m->bed->facts.spheres; ++i)
             if (is_held(m, i)) m->to_held[stage] += power_of(m, i) + t->power[i];
+        if (m->sides > 0)
+            (void)fibrad_heat_read_sides(m->bed->heat, m->side_flux + (size_t)stage * m->sides, m->side_found);
         for (uint32_t b = 0; b < m->bed->facts.walls; ++b)
             if (wall_stores(m, b) && !(t->wall_found[b] > 0)) return FIBRAD_E_UNSOLVABLE;
         return all_positive(t->solution, m->bed->facts.spheres) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;
@@ -333,6 +362,10 @@ static void accept_step(struct stepper *m, double step, double error) {
         span->surroundings_energy += share[stage] * m->to_surroundings[stage];
         span->gas_energy += share[stage] * m->to_gas[stage];
         span->held_energy += share[stage] * m->to_held[stage];
+        for (size_t k = 0; k < m->sides; ++k)
+            m->side_energy[k] += share[stage] * m->side_flux[(size_t)stage * m->sides + k];
+        for (size_t i = 0; m->convected && i < m->bed->facts.spheres; ++i)
+            m->convected_energy[i] += share[stage] * m->convected[(size_t)stage * m->bed->facts.spheres + i];
     }
     span->error = larger_of(span->error, error);
     ++span->steps, ++t->steps;
@@ -467,20 +500,49 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
     for (uint32_t k = 0; k < s->contacts; ++k)
         if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
     if (s->film && !s->gas && !s->stream) return FIBRAD_E_ARGUMENT;
+    if (span->side_gas && !(s->side_gas && s->side_film)) return FIBRAD_E_ARGUMENT;
     if ((span->gas && !s->gas) || ((span->wall_gas || s->wall_film) && !s->wall_gas) || (span->inlet && !s->stream))
         return FIBRAD_E_ARGUMENT;
     return check_stores(bed, s, span);
+}
+
+/* Whether a span has or wants what only patches tell. */
+static bool wants_more(const fibrad_span *span) {
+    return span->side_temperature || span->side_gas || span->side_energy || span->side_end || span->convected_energy;
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
  * contacts, no films and no clumps, and the temperatures of walls and surroundings are known. */
 static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s, const fibrad_span *span) {
     bool suffice = !span->law && !s->conductivity && s->contacts == 0 && !s->film && !s->wall_film && !bed->bodies;
-    suffice = suffice && s->surroundings >= 0 && s->surroundings <= FIBRAD_TEMPERATURE_MAX;
+    suffice = suffice && !s->side_film && !s->side_power && !wants_more(span) && s->surroundings >= 0 &&
+              s->surroundings <= FIBRAD_TEMPERATURE_MAX;
     for (uint32_t b = 0; b < bed->facts.walls; ++b)
         suffice = suffice && s->wall_temperature[b] >= 0 && s->wall_temperature[b] <= FIBRAD_TEMPERATURE_MAX &&
                   !(s->insulated && s->insulated[b]) && !(span->wall_capacity && span->wall_capacity[b] > 0);
     return suffice;
+}
+
+/* Turns what sides gain per area into what they gain. What their wall gains besides, through contacts and its film, is
+ * spread evenly. */
+static void share_out_walls(const struct stepper *m, fibrad_span *span) {
+    const fibrad_triangles *mesh = m->bed->config.triangles;
+    double left[FIBRAD_WALLS_MAX], area[FIBRAD_WALLS_MAX] = {0};
+    memcpy(left, m->span->wall_energy, m->bed->facts.walls * sizeof *left);
+    for (int pass = 0; pass < 2; ++pass)
+        for (size_t k = 0; k < m->sides; ++k) {
+            const uint32_t t = (uint32_t)(k / 2), b = k % 2 == 0   ? mesh->front[t]
+                                                      : mesh->back ? mesh->back[t]
+                                                                   : UINT32_MAX;
+            const double own = area_of_triangle(mesh, t);
+            if (b >= m->bed->facts.walls || isnan(m->side_energy[k])) continue;
+            if (pass == 0)
+                left[b] -= own * m->side_energy[k], area[b] += own;
+            else
+                m->side_energy[k] = own * (m->side_energy[k] + (m->given->absorbed ? 0 : left[b] / area[b]));
+        }
+    if (span->side_energy) memcpy(span->side_energy, m->side_energy, m->sides * sizeof *left);
+    if (span->side_end) memcpy(span->side_end, m->side_found, m->sides * sizeof *left);
 }
 
 /* Writes what a span has come to. */
@@ -497,6 +559,8 @@ static void end_span(const struct stepper *m, fibrad_span *span) {
         if (span->melted) span->melted[i] = stored_at(m, i, t->now[i]).melted;
         span->temperature[i] = t->warmth[i];
     }
+    if (m->sides > 0) share_out_walls(m, span);
+    if (span->convected_energy && n > 0) memcpy(span->convected_energy, m->convected_energy, n * sizeof *t->power);
     if (span->power) memcpy(span->power, t->power, n * sizeof *t->power);
     for (uint32_t b = 0; b < walls; ++b) {
         if (span->wall_power) span->wall_power[b] = m->stage_walls[1][b];
@@ -545,6 +609,22 @@ static void begin_walls(struct stepper *m) {
     m->result.wall_convected = t->wall_convected;
 }
 
+/* Takes memory for sides and convection. */
+static int begin_more(struct stepper *m, const fibrad_span *span) {
+    const size_t n = m->bed->facts.spheres,
+                 sides = m->bed->config.triangles ? 2 * (size_t)m->bed->config.triangles->n : 0;
+    if (!wants_more(span)) return FIBRAD_OK;
+    double *block = calloc(6 * sides + 3 * n + 1, sizeof *block);
+    if (!block) return FIBRAD_E_MEMORY;
+    m->sides = sides;
+    m->side_temperature = block, m->side_gas = block + sides, m->side_found = block + 2 * sides;
+    m->side_energy = block + 3 * sides, m->side_flux = block + 4 * sides;
+    m->convected_energy = block + 6 * sides, m->convected = m->convected_energy + n;
+    if (span->side_temperature) m->sources.side_temperature = m->side_temperature;
+    if (span->side_gas) m->sources.side_gas = m->side_gas;
+    return FIBRAD_OK;
+}
+
 /* Exchange factors pay from the third step at the same positions on. */
 enum { STEPS_BY_PATCHES = 2 };
 
@@ -565,7 +645,11 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     if (sources->stream) m.stream = *sources->stream, m.sources.stream = &m.stream;
     if (!(m.sources.tolerance > 0)) m.sources.tolerance = RESIDUAL * m.tolerance;
     int status = begin_stores(&m, span);
-    if (status) return status;
+    if (!status) status = begin_more(&m, span);
+    if (status) {
+        free(m.sections);
+        return status;
+    }
     t->by_factors = factors_suffice(bed, sources, span) &&
                     (t->network || (double)t->steps + span->duration / next_step(&m) > STEPS_BY_PATCHES);
     status = fibrad_stepping_prepare(bed, sources);
@@ -581,6 +665,7 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     if (!status) status = take_steps(&m);
     if (!status) end_span(&m, span);
     free(m.sections);
+    free(m.side_temperature);
     return status;
 }
 

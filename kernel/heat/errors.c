@@ -362,8 +362,15 @@ static double estimated_error(const fibrad_heat *heat, const fibrad_heat_errors 
     return is_exact(heat, b) ? fibrad_min(all, exact_error(heat, b)) : all;
 }
 
+/* How much the emission of a mesh whose sides have films or powers follows what it receives; 0 of other bodies. */
+static double answer_of(const fibrad_heat *heat, uint32_t b) {
+    return fibrad_heat_finds_sides(heat, b)
+               ? fibrad_heat_mean(heat, b, heat->sources.answer - fibrad_heat_first_meshed(heat))
+               : 0;
+}
+
 double fibrad_heat_radiated_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
-    return fibrad_heat_is_free(heat, b) ? 0 : estimated_error(heat, errors, b);
+    return fibrad_heat_is_free(heat, b) ? 0 : squared(1 - answer_of(heat, b)) * estimated_error(heat, errors, b);
 }
 
 double fibrad_heat_power_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
@@ -498,11 +505,12 @@ static double slope_at(const fibrad_heat *heat, double t) { return 4 * heat->sou
 double fibrad_heat_temperature_error(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b, double t) {
     const double slope = slope_at(heat, t);
     const fibrad_heat_spread own = spread_of(heat, b);
-    const bool insulated = fibrad_heat_is_insulated(heat, b);
+    const double answer = answer_of(heat, b);
+    const bool insulated = fibrad_heat_is_insulated(heat, b) || answer > 0;
     if (fibrad_heat_is_joined(heat, b)) return heat->contacts.error[b];
     if (!(fibrad_heat_is_free(heat, b) || insulated) || !(slope > 0) || !(own.area > 0)) return 0;
     const double eps = heat->sources.emissivity[b], held = fibrad_max(0, heat->sources.storage[b]);
-    const double share = held > 0 ? eps * own.area / (eps * own.area + held) : 1;
+    const double share = answer > 0 ? answer : held > 0 ? eps * own.area / (eps * own.area + held) : 1;
     const double changed =
         (insulated ? errors->changed : changed_emission(heat, b)) + unsettled_emission(heat, b, own.area);
     const absorbed_error absorbed = absorbed_of(heat, errors, b, &own);

@@ -167,6 +167,9 @@ static fibrad_heat *heat_layout(fibrad_arena *arena, fibrad_heat *heat) {
     heat->division.fine = fibrad_arena_take(arena, nodes, sizeof *heat->division.fine);
     heat->cut = fibrad_arena_take(arena, 2 * (size_t)heat->triangles, sizeof *heat->cut);
     heat->sources.excess = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.excess);
+    heat->sources.still = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.still);
+    heat->sources.answer = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, sizeof *heat->sources.answer);
+    heat->sources.within = fibrad_arena_take(arena, heat->triangles > 0 ? others : 0, 1);
     heat->traced = fibrad_arena_take(arena, tasks_for(rows, heat->rays_capacity), 1);
     heat->swept = fibrad_arena_take(arena, heat->config.parts, 1);
     heat->pencils.pool = fibrad_arena_take(arena, heat->pencils.room, 1);

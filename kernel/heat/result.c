@@ -76,11 +76,24 @@ static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_errors 
     }
 }
 
+/* The temperature of an emission of sides, which may be below 0 by rounding. NaN: it is far below. */
+#define ROUNDED 1e-12
+static double side_kelvin(const fibrad_heat *heat, double emission) {
+    const double t0 = heat->sources.surroundings, black = heat->sources.sigma * (t0 * t0) * (t0 * t0);
+    const double t = fibrad_heat_temperature(heat, emission), zero = black + fibrad_abs(emission - black);
+    return t >= 0 || emission + black < -ROUNDED * zero ? t : 0;
+}
+
 /* Whether all temperatures that were to be found exist. */
 static bool all_found(const fibrad_heat *heat) {
     bool found = true;
     for (uint32_t b = 0; b < heat->bodies; b++)
         found = found && (!fibrad_heat_is_free(heat, b) || heat->sources.temperature[b] >= 0);
+    for (uint32_t m = 0; m < heat->meshes; m++) {
+        const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+        for (uint32_t a = 0; a < heat->of_mesh[m] && heat->sources.has_sides[m]; a++)
+            found = found && side_kelvin(heat, heat->sources.emission[b] + fibrad_heat_excess(heat, b)[a]) >= 0;
+    }
     return found;
 }
 
@@ -243,6 +256,13 @@ static const double *light_of_mesh(const fibrad_heat *heat, uint32_t m) {
     return fibrad_heat_is_insulated(heat, fibrad_heat_body(heat, FIBRAD_MESHES + m)) ? NULL : heat->sources.absorbed;
 }
 
+void fibrad_heat_beyond_patches(const fibrad_heat *heat, uint32_t m, double beyond[2]) {
+    const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
+    const double *light = light_of_mesh(heat, m);
+    beyond[0] = flux_beyond_patches(heat, m, heat->solution.net, heat->solution.power[b]);
+    beyond[1] = light != NULL ? flux_beyond_patches(heat, m, light, fibrad_heat_absorbed(heat, b)) : 0;
+}
+
 /* The net power of a side per area. beyond: what patches lack of the powers of its mesh: of net powers, and of light.
  */
 static double flux_of_side(const fibrad_heat *heat, uint32_t m, const fibrad_mesh_cut *cut, const side_sum *net,
@@ -261,8 +281,7 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
     const double *excess = fibrad_heat_excess(heat, b);
     if (excess == NULL) return heat->sources.temperature[b];
     const uint32_t a = fibrad_heat_first_meshed(heat) + cut->patch - heat->first[b];
-    const double t = fibrad_heat_temperature(heat, heat->sources.emission[b] + excess[a]);
-    return t >= 0 ? t : 0;
+    return side_kelvin(heat, heat->sources.emission[b] + excess[a]);
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {
@@ -270,12 +289,7 @@ int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temper
     if (heat == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
     const fibrad_mesh *mesh = &heat->scene->mesh;
-    for (uint32_t m = 0; m < heat->meshes; m++) {
-        const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
-        const double *light = light_of_mesh(heat, m);
-        beyond[m][0] = flux_beyond_patches(heat, m, heat->solution.net, heat->solution.power[b]);
-        beyond[m][1] = light != NULL ? flux_beyond_patches(heat, m, light, fibrad_heat_absorbed(heat, b)) : 0;
-    }
+    for (uint32_t m = 0; m < heat->meshes; m++) fibrad_heat_beyond_patches(heat, m, beyond[m]);
     for (uint32_t s = 0; s < 2 * heat->triangles; s++) {
         const fibrad_mesh_cut *cut = fibrad_mesh_cut_of(mesh, heat->cut, s);
         const uint32_t to = (uint32_t)(cut - heat->cut);

@@ -167,6 +167,45 @@ void fibrad_heat_place_flows(fibrad_heat *heat);
 /* Adds to `to` what bodies gain through contacts if the means of all surfaces are equal. */
 void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
 
+/* ---- sides.c: sides of triangles that have films or powers --------------------------------------------------------
+ */
+
+/* Whether the temperature of a side, by the caller's number, is to be found: it has a film or a power. */
+static inline bool fibrad_heat_side_is_found(const double *film, const double *power, uint64_t side) {
+    return (film != NULL && film[side] != 0) || (power != NULL && power[side] == power[side]);
+}
+
+/* Finds how emissions of sides follow the radiation that arrives. Overwrites heat->solution.source. */
+void fibrad_heat_find_sides(fibrad_heat *heat);
+
+/* Sends what one Jacobi iteration would change on a mesh with such sides. Returns the product of the residual and this
+ * change. */
+double fibrad_heat_sides_residual(fibrad_heat *heat, uint32_t body);
+
+/* The product of x, a matrix and y. emits: the matrix is that of the system without the net flows; else it is the
+ * inverse of the preconditioner. */
+double fibrad_heat_sides_product(const fibrad_heat *heat, uint32_t body, const double *x, const double *y, bool emits);
+
+/* Whether the sides of a body hold the level of temperatures: some have a given temperature or a film. */
+bool fibrad_heat_sides_hold(const fibrad_heat *heat, uint32_t body);
+
+/* The sum over the patches of emissivity times area times the square of the emission if all that arrives is `level`,
+ * minus `level`. */
+double fibrad_heat_sides_squares(const fibrad_heat *heat, uint32_t body, double level);
+
+/* Adds `change` times what extrapolation takes of the powers of the coarser level to what sides gain. */
+void fibrad_heat_correct_sides(fibrad_heat *heat, double change);
+
+/* Takes over the emissions of sides at the end of the finer level. Returns whether both levels must be searched again.
+ * Overwrites heat->solution.source. */
+bool fibrad_heat_finish_sides(fibrad_heat *heat);
+
+/* ---- result.c ---------------------------------------------------------------------------------------------------- */
+
+/* What the fluxes of a mesh have besides the flows of their patches per area: from extrapolation, residuals, and areas
+ * by beams; in [0] of net powers, in [1] of light. */
+void fibrad_heat_beyond_patches(const fibrad_heat *heat, uint32_t mesh, double beyond[2]);
+
 /* ---- solve.c ----------------------------------------------------------------------------------------------------- */
 
 /* Prepares the first sweep of a solution. */

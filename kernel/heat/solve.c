@@ -225,10 +225,11 @@ static double find_residual(fibrad_heat *heat) {
     double slope = 0;
     warm_joined(heat);
     for (uint32_t b = 0; b < heat->bodies; b++)
-        slope += fibrad_heat_is_joined(heat, b)  ? joined_residual(heat, b)
-                 : fibrad_heat_conducts(heat, b) ? conducting_residual(heat, b)
-                 : fibrad_heat_is_free(heat, b)  ? free_residual(heat, b)
-                                                 : given_residual(heat, b);
+        slope += fibrad_heat_is_joined(heat, b)     ? joined_residual(heat, b)
+                 : fibrad_heat_conducts(heat, b)    ? conducting_residual(heat, b)
+                 : fibrad_heat_is_free(heat, b)     ? free_residual(heat, b)
+                 : fibrad_heat_finds_sides(heat, b) ? fibrad_heat_sides_residual(heat, b)
+                                                    : given_residual(heat, b);
     return fibrad_max(0, slope); /* of joined bodies it may be below 0 by rounding */
 }
 
@@ -348,6 +349,8 @@ static void find_scale(fibrad_heat *heat) {
         if (body.area > 0) {
             const double residual = mean_residual_at(heat, b, &body, mean);
             heat->solution.scale += body.area * residual * residual / stiffness(heat, b, &body);
+        } else if (fibrad_heat_finds_sides(heat, b)) {
+            heat->solution.scale += fibrad_heat_sides_squares(heat, b, mean);
         } else if (!fibrad_heat_is_joined(heat, b)) {
             heat->solution.scale += emitting(heat, b) * difference * difference + excess_squares(heat, b);
         }
@@ -368,9 +371,11 @@ static void heat_by_light(fibrad_heat *heat) {
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false;
+    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false, sides = false;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        held = held || emitting(heat, b) > 0;
+        const bool finds = fibrad_heat_finds_sides(heat, b);
+        held = held || (finds ? fibrad_heat_sides_hold(heat, b) : emitting(heat, b) > 0);
+        sides = sides || finds;
         radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.storage[b] == 0)
             sum += heat->sources.given_power[b], sizes += fibrad_abs(heat->sources.given_power[b]);
@@ -379,7 +384,7 @@ static bool solvable(fibrad_heat *heat) {
         sum += light, sizes += light;
     }
     heat->sources.free_level = !held;
-    if (heat->contacts.joins) return held || !radiates;
+    if (heat->contacts.joins || sides) return held || !(radiates || sides);
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -580,6 +585,13 @@ static void finish_contacts(fibrad_heat *heat) {
     fibrad_contact_gains(&own, c->temperature, c->gain);
 }
 
+/* Goes back from the finer level to the coarser one. */
+static void return_to_fours(fibrad_heat *heat) {
+    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= heat->solution.detail[a];
+    heat->solution.group = FIBRAD_HEAT_FOUR;
+    send_radiosities(heat);
+}
+
 /* Finds the powers of the finer level and extrapolates them to patches without size. If radiosities were smooth, the
  * error would fall with the area of patches, and a third of the difference between both levels would be right. Near
  * contacts they are not quite smooth. FIBRAD_HEAT_EXTRAPOLATION is right for settled beds:
@@ -603,8 +615,12 @@ static void finish_powers(fibrad_heat *heat) {
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
     if (heat->contacts.joins) finish_contacts(heat);
+    const bool again = fibrad_heat_finish_sides(heat);
     for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
-    send_means(heat);
+    if (again)
+        return_to_fours(heat);
+    else
+        send_means(heat);
 }
 
 /* The residual of all patches is mostly that of the spheres. What single walls gain may be much less right, above all
@@ -678,6 +694,9 @@ static double rounding_of(const fibrad_heat *heat, uint32_t b) {
     const double of_pattern = conducts ? fibrad_heat_largest_gain(heat, b) : 0;
     const double of_mean = eps == 1 || free_mean || (conducts && has_black_mean(heat, b)) ? 0 : eps / (1 - eps);
     double sum = 0;
+    if (fibrad_heat_finds_sides(heat, b))
+        return ROUNDING_OF_J *
+               fibrad_heat_sides_product(heat, b, heat->solution.radiosity, heat->solution.radiosity, true);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
         sum += heat->solution.area[a] * heat->solution.radiosity[a] * heat->solution.radiosity[a];
     return ROUNDING_OF_J * fibrad_max(of_pattern, of_mean) * sum;
@@ -756,12 +775,24 @@ static bool replaces_gas(fibrad_heat *heat) {
     return rough > 0;
 }
 
+/* Whether the emissions of sides do not yet balance what arrives, so that the search goes on with new slopes. */
+static bool replaces_sides(fibrad_heat *heat, bool coarse) {
+    if (coarse || !heat->sources.sides) return false;
+    fibrad_heat_find_sides(heat);
+    heat->solution.slope = find_residual(heat);
+    if (level_solved(heat)) return false;
+    heat->sources.first_tolerance =
+        fibrad_min(FIBRAD_HEAT_FIRST_TOLERANCE, WITHIN * fibrad_sqrt(heat->solution.slope / heat->solution.scale));
+    return true;
+}
+
 /* Whether what a search takes as given was replaced. */
 static bool replaces_given(fibrad_heat *heat, bool coarse) {
     heat->sources.first_tolerance = 0;
+    const bool balancing = replaces_sides(heat, coarse);
     const bool uneven = coarse && replaces_unevenness(heat);
     const bool streaming = replaces_gas(heat);
-    return replaces_flows(heat) || uneven || streaming;
+    return replaces_flows(heat) || uneven || streaming || balancing;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
@@ -777,7 +808,9 @@ static void turn_direction(fibrad_heat *heat, double keep) {
 /* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
  * finish_powers, `detail` has minus the radiosities of the coarser level. */
 static void refine_patches(fibrad_heat *heat) {
+    if (!heat->sources.guessed) fibrad_heat_correct_sides(heat, 1);
     find_powers(heat, heat->solution.coarse);
+    if (!heat->sources.guessed) fibrad_heat_correct_sides(heat, -1);
     find_emissions(heat);
     if (heat->sources.free_level) fix_level(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
@@ -803,6 +836,10 @@ static void leave_level(fibrad_heat *heat) {
  * direction p. product: N p. */
 static double given_product(const fibrad_heat *heat, uint32_t b, const double *z, const double *product) {
     double sum = 0;
+    if (fibrad_heat_finds_sides(heat, b)) {
+        for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) sum += z[a] * product[a];
+        return fibrad_heat_sides_product(heat, b, z, heat->solution.direction, true) - sum;
+    }
     if (heat->sources.emissivity[b] == 1) return 0;
     const double share = heat->sources.emissivity[b] / (1 - heat->sources.emissivity[b]);
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) {
@@ -898,6 +935,9 @@ static double along_last(const fibrad_heat *heat) {
             if (!(body.area > 0)) continue;
             shift = fibrad_heat_mean(heat, b, z), shifted = fibrad_heat_mean(heat, b, p);
             sum += body.area * stiffness(heat, b, &body) * shift * shifted;
+        } else if (fibrad_heat_finds_sides(heat, b)) {
+            sum += fibrad_heat_sides_product(heat, b, z, p, false);
+            continue;
         }
         for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && rho > 0; a++)
             sum += heat->solution.area[a] / rho * (z[a] - shift) * (p[a] - shifted);
@@ -933,7 +973,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
         const bool replaced = replaces_given(heat, coarse);
-        if (!replaced && !(coarse && rough)) {
+        if (!replaced && !(coarse && rough && !heat->sources.guessed)) {
             leave_level(heat);
             return;
         }
@@ -969,6 +1009,10 @@ static int end_sweep(fibrad_heat *heat) {
         for (uint32_t b = 0; b < heat->bodies; b++)
             for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++)
                 heat->solution.net[a] = sum[a] + light_on(heat, b, a);
+        if (heat->solution.group == 1 && heat->sources.sides) {
+            fibrad_heat_find_sides(heat);
+            if (heat->sources.guessed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
+        }
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);
         heat_by_light(heat);

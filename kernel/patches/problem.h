@@ -159,9 +159,19 @@ typedef struct fibrad_heat_given {
     bool insulated[FIBRAD_HEAT_OTHERS]; /* by body, from the first wall on */
     double *excess; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
     bool has_excess[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
-    const double *light;               /* [patches] power that arrives from outside, the caller's; NULL: none */
-    const double *absorbed;            /* [patches] light that patches have absorbed, the caller's; NULL: none */
-    bool free_level;                   /* the sources fix differences of emissions, but not their level */
+    /* of sides.c */
+    bool has_sides[FIBRAD_WALLS_MAX]; /* [meshes], whether temperatures of sides are to be found */
+    bool sides;                       /* some mesh has */
+    bool guessed;                     /* the coarser level has first guesses of these */
+    const double *side_temperature, *side_film, *side_gas, *side_power; /* the caller's */
+    double of_others[FIBRAD_WALLS_MAX]; /* K, [meshes], of sides that have no temperature of their own */
+    double beyond[FIBRAD_WALLS_MAX];    /* [meshes], what sides gain per area besides the flows of their patches */
+    double changed;                     /* square of the last change of emissions from search to search */
+    double *still, *answer;             /* [patches of all meshes], emission without arriving radiation; its slope */
+    unsigned char *within;              /* [patches of all meshes], 1: of the side of the patch before */
+    const double *light;                /* [patches] power that arrives from outside, the caller's; NULL: none */
+    const double *absorbed;             /* [patches] light that patches have absorbed, the caller's; NULL: none */
+    bool free_level;                    /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance, settled; /* of the residual; of what steps to come would change in powers, over these */
     uint32_t limit;            /* sweeps after which to stop */
@@ -341,6 +351,12 @@ static inline const double *fibrad_heat_excess(const fibrad_heat *heat, uint32_t
     return meshed && heat->sources.has_excess[mesh]
                ? heat->sources.excess + (heat->first[body] - fibrad_heat_first_meshed(heat))
                : NULL;
+}
+/* Whether the temperatures of sides of a body are found in the present search. On the coarser level they are given. */
+static inline bool fibrad_heat_finds_sides(const fibrad_heat *heat, uint32_t body) {
+    const uint32_t mesh = body - fibrad_heat_body(heat, FIBRAD_MESHES);
+    return body >= fibrad_heat_body(heat, FIBRAD_MESHES) && mesh < heat->meshes && heat->sources.has_sides[mesh] &&
+           heat->solution.group == 1;
 }
 /* The first patch that is not of a sphere, and the patch of the surroundings. */
 static inline uint32_t fibrad_heat_others(const fibrad_heat *heat) { return heat->first[heat->spheres]; }
