@@ -13,6 +13,7 @@ static const struct {
     int (*run)(int argc, char **argv);
 } commands[] = {
     {"conductivity", "effective radiative conductivity of a bed of grey spheres", command_conductivity},
+    {"couple", "a bed in time beside another solver, by preCICE or OpenFOAM", command_couple},
     {"factors", "view factors or exchange factors of all spheres of a file", command_factors},
     {"furnace", "temperatures in a box with a medium that absorbs, emits and scatters", command_furnace},
     {"heat", "net radiative powers of grey spheres and walls", command_heat},

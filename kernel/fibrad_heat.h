@@ -170,8 +170,15 @@ typedef struct fibrad_stream {
  * the power, or to 5 % of what the wall absorbs, whichever is more. If a temperature is unknown, the tolerance of
  * these powers is 100 times as large, at most 1e-3.
  *
- * side_temperature is in the order of the caller's triangles. If sides share a patch, each side emits the mean of
- * their emissions. */
+ * side_temperature is in the order of the caller's triangles, as are side_film, side_gas and side_power. If sides share
+ * a patch, each side emits the mean of their emissions. The temperature T of a side that has a film or a power is
+ * found:
+ *
+ *     eps (H - sigma T^4) + side_film (side_gas - T) + side_power = 0.
+ *
+ * side_film is a heat transfer coefficient. It and side_power are per area of the side. The side has no
+ * side_temperature. Its wall has a given temperature, with which the search begins, and an emissivity above 0. The net
+ * power of side and wall is what they gain by radiation. A side that absorbs light (`absorbed`) gains this, too. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */
@@ -187,6 +194,9 @@ typedef struct fibrad_heat_sources {
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
     uint32_t sweeps_max;            /* sweeps after which to give up, FIBRAD_E_UNSETTLED; 0: 1000 */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
+    const double *side_film;        /* sigma K^3, [2 triangles], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
+    const double *side_gas;         /* K, [2 triangles], temperature behind the film; NULL without `side_film` */
+    const double *side_power;       /* sigma K^4, [2 triangles], above 0: given off; NaN: not given; NULL: all NaN */
     const double *light; /* sigma K^4 L^2, [fibrad_heat_patches], arrives from outside; NULL: none; fibrad_light.h */
     const double *conductivity; /* sigma K^3 L, [spheres], above 0; infinity: one temperature; NULL: all infinity */
     const double *absorbed;     /* sigma K^4 L^2, [fibrad_heat_patches], light that heats; NULL: none; fibrad_light.h */
@@ -215,8 +225,8 @@ void fibrad_heat_sources_init(fibrad_heat_sources *sources);
 int fibrad_heat_check(const fibrad_heat *heat, const fibrad_heat_sources *sources, fibrad_fault *fault);
 
 /* Begins a solution. It starts from the radiosities of the last solution. It starts anew if there was none, or if only
- * one of the two solutions has `light`. The arrays `light`, `absorbed` and those of contacts must stay until the
- * solution is read. The others are no longer needed after the call.
+ * one of the two solutions has `light`. The arrays `light`, `absorbed`, those of contacts and those of sides must stay
+ * until the solution is read. The others are no longer needed after the call.
  *   Errors   as fibrad_heat_check
  *            _STATE: a task is not traced, or the scene has changed
  *   Cost     O(patches) */
@@ -235,8 +245,8 @@ int fibrad_heat_sweep(fibrad_heat *heat, uint32_t part);
  *   Output   solved: 1 if the residual is below the tolerance; else 0
  *   Errors   _ARGUMENT
  *            _STATE: a part was not swept, no solution was begun, or the scene has changed
- *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, there is no film, and there are contacts or
- *            clumps or the powers do not add up to zero
+ *            _UNSOLVABLE: all temperatures are unknown, nothing escapes, there is no film, and there are contacts,
+ *            clumps or powers of sides, or the powers do not add up to zero
  *            _UNSETTLED: the search has not ended after sweeps_max sweeps; there is no solution
  *   Level    If all temperatures are unknown, nothing escapes and there is no film, any level would do. The mean
  *            emission, weighted by emissivity and area, is then that of the surroundings. */

@@ -3,8 +3,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "command/commands.h"
-#include "heat/heat.h"
+#include "command/heat_options.h"
 #include "plot/plot_heat.h"
 
 static int take_patches(const char *text, void *of_sphere) {
@@ -15,7 +14,7 @@ static int take_patches(const char *text, void *of_sphere) {
     return status;
 }
 
-static const struct option heat_table[] = {
+const struct option heat_options[] = {
     {OPTION_EMISSIVITY_CURVES(struct heat, emissivities)},
     {0, "temperature", "T",
      "temperature of all spheres, or TYPE:T,..., or a column of the file; blank or nan for spheres of --power",
@@ -70,45 +69,50 @@ static const struct option heat_table[] = {
     {OPTION_SLICE},
     {.name = NULL}};
 
+const char *const heat_more[] = {
+    FILES_MORE,
+    WALLS_MORE WALLS_OF_HEAT,
+    "Each sphere has a temperature or a power. With both options, each sphere has a value from one of them.\n"
+    "Example: --temperature 1:600 --power 2:5 gives 600 K to spheres of type 1, and 5 W to those of type 2.\n"
+    "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
+    "for the spheres that the list or column leaves out. A power is given off from inside, so the net power\n"
+    "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
+    "reflects everything; without contacts and convection it gains nothing and has no temperature.\n",
+    "--error E holds for the powers of the spheres together, for each wall, for the surroundings if a wall is\n"
+    "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
+    "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
+    "absorb.\n",
+    LIGHT_MORE,
+    CONTACTS_MORE,
+    FILM_MORE,
+    CLUMPS_MORE,
+    "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
+    "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
+    "the temperature of a wall (zmin:temperature=@TABLE), of the surroundings or of gas. The .csv then has\n"
+    "the time in its first column. A series of .vtp has a .pvd for ParaView.\n"
+    "A sphere whose heat capacity is inf keeps its temperature: --heat-capacity 1:800,2:inf holds type 2. The\n"
+    "run ends with an error where a temperature leaves the table of --heat-capacity. With --melting outputs\n"
+    "have the fraction that has melted.\n",
+    "@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
+    "which. Beyond the ends of a table its first or last value is taken, with a warning.\n",
+    "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
+    "that is spread evenly inside. Outputs have the least and the largest temperature of the surface, the\n"
+    "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
+    "T_centre_K, T_centre_error_K. The unit of length must be known.\n",
+    "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
+    "i = -1. Walls are i = -2, -3, ... with their names in the column `body`, then gas. All q_W add up to 0.\n",
+    "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
+    "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
+    "error are relative to what the spheres emit, or to what they absorb if that is more.\n",
+    NULL};
+
 static int heat_help(void) {
     options_help(
         "heat",
         "fibrad heat FILE... --emissivity E --temperature T --ambient T [options]\n\n"
         "Net powers [W] of all spheres of FILE, of walls and of the surroundings, all grey and diffuse.\n"
         "A net power is above 0 where heat is gained. Where a power is given, the temperature is found [K].\n",
-        heat_table,
-        (const char *const[]){
-            FILES_MORE, WALLS_MORE WALLS_OF_HEAT,
-            "Each sphere has a temperature or a power. With both options, each sphere has a value from one of them.\n"
-            "Example: --temperature 1:600 --power 2:5 gives 600 K to spheres of type 1, and 5 W to those of type 2.\n"
-            "Columns have a blank or nan where the other option counts. A single number beside a list or a column is\n"
-            "for the spheres that the list or column leaves out. A power is given off from inside, so the net power\n"
-            "is its negative. An insulated wall sends back all that arrives, point by point. A sphere of emissivity 0\n"
-            "reflects everything; without contacts and convection it gains nothing and has no temperature.\n",
-            "--error E holds for the powers of the spheres together, for each wall, for the surroundings if a wall is\n"
-            "insulated, and for T^4 where temperatures are found. Each error is relative to a root mean square. Where\n"
-            "powers are below 1e-3 of what spheres emit or absorb, errors are relative to 1e-3 of what they emit or\n"
-            "absorb.\n",
-            LIGHT_MORE, CONTACTS_MORE, FILM_MORE, CLUMPS_MORE,
-            "--until: Each sphere stores specific heat times density times volume. --temperature is that at the\n"
-            "beginning, and --power heats the spheres. @TABLE, two columns of seconds and temperatures, may stand for\n"
-            "the temperature of a wall (zmin:temperature=@TABLE), of the surroundings or of gas. The .csv then has\n"
-            "the time in its first column. A series of .vtp has a .pvd for ParaView.\n"
-            "A sphere whose heat capacity is inf keeps its temperature: --heat-capacity 1:800,2:inf holds type 2. The\n"
-            "run ends with an error where a temperature leaves the table of --heat-capacity. With --melting outputs\n"
-            "have the fraction that has melted.\n",
-            "@TABLE: A header has names and units, `t [min],T [C]` or `k [W/(m K)],T [K]`, and says which column is\n"
-            "which. Beyond the ends of a table its first or last value is taken, with a warning.\n",
-            "--solid-conductivity: Spheres conduct, and T_K is the mean over the surface. A power comes from a source\n"
-            "that is spread evenly inside. Outputs have the least and the largest temperature of the surface, the\n"
-            "temperature of the centre, and their estimated errors: T_min_K, T_max_K, T_surface_error_K,\n"
-            "T_centre_K, T_centre_error_K. The unit of length must be known.\n",
-            "The .csv has the columns i,T_K,q_W,q_error_W,T_error_K,body, with estimated errors. The surroundings are\n"
-            "i = -1. Walls are i = -2, -3, ... with their names in the column `body`, then gas. All q_W add up to 0.\n",
-            "Several frames go into one .csv, .dump or .json with their numbers. If OUT has a *, each frame has a\n"
-            "file. Standard output ends with a summary of each frame, one `key value` on a line. Its balance and\n"
-            "error are relative to what the spheres emit, or to what they absorb if that is more.\n",
-            NULL},
+        heat_options, heat_more,
         "Examples:\n"
         "  fibrad heat packing.dump --emissivity 0.8 --temperature v_T --ambient 300 -o q.csv\n"
         "  fibrad heat packing.dump --emissivity 0.8 --power 40 --wall box:insulated,zmin:temperature=1200 \\\n"
@@ -120,11 +124,11 @@ static int heat_help(void) {
     return STATUS_OK;
 }
 
-static int check_heat(struct heat *h) {
+int heat_check(struct heat *h, const char *command) {
     h->options.timed = h->given.timed = h->time.until > 0;
     const fibrad_heat_config *config = &h->config;
     const bool counted = config->directions > 0 || config->points > 0 || config->patches > 0 || config->wall_rays > 0;
-    int status = bed_options_check(&h->options, "heat", CONTENT_HEAT);
+    int status = bed_options_check(&h->options, command, CONTENT_HEAT);
     if (status) return status;
     if (h->given.timed && h->error > 0)
         return message(STATUS_USAGE, "--error is for powers at one time, not for --until");
@@ -169,19 +173,22 @@ static int heat_frame(void *heat, struct bed *bed) {
     return status;
 }
 
+void heat_free(struct heat *h) {
+    quantity_free(&h->emissivities);
+    quantity_free(&h->solid);
+    quantity_free(&h->time.capacity);
+    quantity_free(&h->contacts.conductivity);
+    curve_free(&h->contacts.gas_curve);
+    curve_free(&h->given.ambient_curve);
+    curve_free(&h->film.gas_curve);
+    curve_free(&h->film.capacity_curve);
+}
+
 int command_heat(int argc, char **argv) {
-    struct heat heat = {.options.walls.keys = WALL_HEAT | WALL_EMISSIVITY | WALL_ABSORPTIVITY | WALL_CONVECTION |
-                                              WALL_GAS | WALL_CAPACITY};
-    int status = options_read("heat", heat_table, argc, argv, &heat);
-    if (!status) status = check_heat(&heat);
+    struct heat heat = {.options.walls.keys = HEAT_WALL_KEYS};
+    int status = options_read("heat", heat_options, argc, argv, &heat);
+    if (!status) status = heat_check(&heat, "heat");
     const int ended = bed_options_end(&heat.options, status, heat_help, heat_frame, &heat);
-    quantity_free(&heat.emissivities);
-    quantity_free(&heat.solid);
-    quantity_free(&heat.time.capacity);
-    quantity_free(&heat.contacts.conductivity);
-    curve_free(&heat.contacts.gas_curve);
-    curve_free(&heat.given.ambient_curve);
-    curve_free(&heat.film.gas_curve);
-    curve_free(&heat.film.capacity_curve);
+    heat_free(&heat);
     return ended;
 }

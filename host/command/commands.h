@@ -9,6 +9,7 @@ int command_conductivity(int argc, char **argv);
 int command_reproduce(int argc, char **argv);
 int command_furnace(int argc, char **argv);
 int command_heat(int argc, char **argv);
+int command_couple(int argc, char **argv);
 int command_join(int argc, char **argv);
 
 #endif

@@ -304,6 +304,7 @@ struct heat {
     struct film_options film;
     struct face face;
     struct profile profile;
+    bool coupled; /* the end of the run, and temperatures of gas and faces, come from another solver */
     bool members; /* outputs have a line for each member of a clump */
     struct quantity emissivities, solid;
     fibrad_heat_config config; /* directions 0: chosen by the emissivities of the bed */

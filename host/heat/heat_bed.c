@@ -73,6 +73,7 @@ static int read_values(struct heat *h, struct bed *bed) {
     const char *needed = h->solid.given                 ? SOLID_NEEDS
                          : contacts_given(&h->contacts) ? CONTACTS_NEED
                          : film_given(h)                ? "--convection needs"
+                         : h->coupled                   ? "fibrad couple needs"
                                                         : NULL;
     struct walls opened;
     int status = bed_options_walls(&h->options, bed, &h->walls);

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "heat/heat.h"
-#include "plot/plot_heat.h"
+#include "heat/time_run.h"
 
 enum { TIMES_MAX = 10000 };
 
@@ -68,36 +67,6 @@ int time_check(struct time_options *time, double zero, struct bed_options *bed) 
     bed_options_quantity(bed, &time->density, "kg/m3");
     return STATUS_OK;
 }
-
-/* State of a run in time. */
-struct time_run {
-    struct heat *heat;
-    struct bed bed;              /* as it is written: its frame is the number of the output */
-    fibrad_heat_sources sources; /* as they change with time */
-    double square_metres;        /* square of the bed's unit of length [m2] */
-    fibrad_span span;
-    fibrad_law law;
-    double now;                                   /* [s] since the beginning */
-    double wall[WALLS_MAX];                       /* temperatures of walls now [K] */
-    double wall_energy[WALLS_MAX];                /* gained by walls during the last span [J] */
-    double energy[WALLS_MAX];                     /* gained by walls since the beginning [J] */
-    double surroundings_energy;                   /* gained by the surroundings since the beginning [J] */
-    double gas_energy;                            /* gained by the gas of films since the beginning [J] */
-    uint64_t steps, refused, sweeps, corrections; /* sums over spans, as in fibrad_span */
-    double error;                                 /* largest fibrad_span.error */
-    struct time_point *point;                     /* [points] of the picture */
-    size_t points;
-    bool failed; /* memory for points ran out */
-    struct table_excess excess[TABLES];
-    double lag;                       /* largest r^2/(pi^2 alpha) of spheres that conduct [s]; 0: none conducts */
-    double *specific;                 /* [spheres] heat capacities [J/(kg K)] */
-    fibrad_store *store;              /* tables and latent heats of spheres; NULL: none */
-    uint32_t *store_of;               /* [spheres] */
-    double *melted, *stored, *gained; /* [spheres] of the span; [J]; [J] since the beginning */
-    double wall_capacity[WALLS_MAX],
-        wall_power[WALLS_MAX]; /* [J/K]; for powers at one time: NaN where heat is stored */
-    double held_energy;        /* gained by held spheres since the beginning [J] */
-};
 
 static struct time_point point_of(const struct time_run *m, double time, const double *temperature) {
     struct time_point point = {time, 0, INFINITY, -INFINITY, time > 0 ? stream_outlet(m->heat) : NAN};
@@ -313,6 +282,7 @@ static int show_triangles(struct time_run *m) {
 static int solve_state(struct time_run *m, fibrad_heat_sources *shown) {
     struct heat *h = m->heat;
     *shown = m->sources;
+    m->shown = m->now;
     for (uint32_t k = 0; k < h->walls.count; ++k)
         m->wall_power[k] = m->wall_capacity[k] > 0 || !shown->wall_power ? NAN : shown->wall_power[k];
     shown->wall_power = m->wall_power;
@@ -324,8 +294,7 @@ static int solve_state(struct time_run *m, fibrad_heat_sources *shown) {
     return fibrad_bed_solve(h->made, shown, NULL, &h->result);
 }
 
-/* Computes the powers at m->now and writes all outputs. */
-static int write_state(struct time_run *m) {
+int time_write(struct time_run *m) {
     struct heat *h = m->heat;
     fibrad_heat_sources shown;
     int status = solve_state(m, &shown);
@@ -344,16 +313,18 @@ static int write_state(struct time_run *m) {
     return status;
 }
 
-/* Advances the temperatures to another time. */
-static int advance(struct time_run *m, double time) {
-    double wall[WALLS_MAX], ended[WALLS_MAX], surroundings;
-    outside_at(m, time, wall, &surroundings);
+int time_try(struct time_run *m, double time) {
+    struct heat *h = m->heat;
+    outside_at(m, time, m->wall_next, &m->surroundings_next);
     m->span.duration = time - m->now;
-    m->span.wall_temperature = wall, m->span.surroundings = &surroundings, m->span.wall_end = ended;
-    film_at(m->heat, m->now, time);
-    const int status = fibrad_bed_advance(m->heat->made, &m->sources, &m->span);
-    warn_made(&m->heat->options.warned, m->heat->bed, &m->heat->walls, m->heat->made, m->heat->given.zero == 0);
-    if (status) return library_status(m, status);
+    film_at(h, m->now, time);
+    const int status = fibrad_bed_advance(h->made, &m->sources, &m->span);
+    warn_made(&h->options.warned, h->bed, &h->walls, h->made, h->given.zero == 0);
+    m->next = time;
+    return status ? library_status(m, status) : STATUS_OK;
+}
+
+void time_keep(struct time_run *m) {
     m->steps += m->span.steps, m->refused += m->span.refused, m->sweeps += m->span.sweeps;
     m->corrections += m->span.corrections;
     m->error = fmax(m->error, m->span.error);
@@ -361,42 +332,34 @@ static int advance(struct time_run *m, double time) {
     m->surroundings_energy += m->span.surroundings_energy, m->gas_energy += m->span.gas_energy;
     m->held_energy += m->span.held_energy;
     for (uint32_t i = 0; i < m->bed.n; ++i) m->gained[i] += m->stored[i];
-    for (uint32_t k = 0; k < m->heat->walls.count; ++k) m->wall[k] = m->wall_capacity[k] > 0 ? ended[k] : wall[k];
-    m->sources.surroundings = surroundings;
-    m->now = time;
-    return STATUS_OK;
+    for (uint32_t k = 0; k < m->heat->walls.count; ++k)
+        m->wall[k] = m->wall_capacity[k] > 0 ? m->wall_end[k] : m->wall_next[k];
+    m->sources.surroundings = m->surroundings_next;
+    m->now = m->next;
 }
 
-static int run_spans(struct time_run *m) {
-    struct span_end *end = NULL;
-    size_t count = 0;
-    int status = find_times(m->heat, &end, &count);
-    if (!status) note_point(m, 0, m->span.temperature);
-    for (size_t k = 0; k < count && !status; ++k) {
-        if (end[k].time > 0) status = advance(m, end[k].time);
-        if (!status && end[k].output) status = write_state(m);
-    }
+/* Finds the temperatures of walls that have none given, for the summary. */
+static int find_last_walls(struct time_run *m) {
+    int status = STATUS_OK;
     for (uint32_t k = 0; k < m->heat->walls.count && !status; ++k) {
         fibrad_heat_sources shown;
         if (!isnan(m->wall[k])) continue;
-        status = end[count - 1].output ? STATUS_OK : library_status(m, solve_state(m, &shown));
+        status = m->shown == m->now ? STATUS_OK : library_status(m, solve_state(m, &shown));
         m->wall[k] = m->heat->result.wall_temperature[k];
     }
-    if (!status && m->failed) status = message_memory();
-    free(end);
     return status;
 }
 
-static void print_summary(struct time_run *m, double seconds) {
+static void print_summary(struct time_run *m) {
     struct heat *h = m->heat;
     const struct time_options *o = &h->time;
     struct report *report = &h->options.report;
     double supplied = 0, stored = 0, exchanged = 0, melted = 0, mass = 0;
     bool held = false;
-    const struct time_point end = point_of(m, o->until, m->span.temperature);
+    const struct time_point end = point_of(m, m->now, m->span.temperature);
     for (uint32_t i = 0; i < h->bed->n; ++i) {
         stored += m->gained[i], exchanged += fabs(m->gained[i]);
-        supplied += o->until * m->sources.power[i];
+        supplied += m->now * m->sources.power[i];
         if (isinf(m->span.capacity[i]))
             held = true;
         else if (m->span.melted)
@@ -406,7 +369,7 @@ static void print_summary(struct time_run *m, double seconds) {
     double balance = stored - supplied + m->surroundings_energy + m->gas_energy + m->held_energy;
     for (uint32_t k = 0; k < h->walls.count; ++k) balance += m->energy[k];
     bed_options_report(&h->options, h->bed, &h->walls, &h->facts);
-    report_value(report, "until_s", o->until, 9);
+    report_value(report, "until_s", m->now, 9);
     report_text(report, "model", m->corrections > 0 ? "corrected" : "patches");
     quantity_report(&h->emissivities, "emissivity", report);
     quantity_report(&h->solid, "solid_conductivity", report);
@@ -417,7 +380,7 @@ static void print_summary(struct time_run *m, double seconds) {
     wall_values_report(&h->walls, m->wall, "_K", 6, report);
     wall_values_report(&h->walls, h->wall_emissivity, "_emissivity", 6, report);
     report_count(report, "threads", (uint64_t)(h->options.threads ? h->options.threads : omp_get_max_threads()));
-    report_value(report, "seconds", seconds, 3);
+    report_value(report, "seconds", progress_clock() - m->begun, 3);
     report_count(report, "steps", m->steps);
     report_count(report, "steps_refused", m->refused);
     report_count(report, "sweeps", m->sweeps);
@@ -443,7 +406,7 @@ static void print_summary(struct time_run *m, double seconds) {
 /* The inside of each sphere is taken to be steady. Warns if a sphere takes longer to become steady than a step, or than
  * the whole run. */
 static void warn_lag(const struct time_run *m) {
-    const double until = m->heat->time.until, step = m->steps > 0 ? until / (double)m->steps : until;
+    const double until = m->now, step = m->steps > 0 ? until / (double)m->steps : until;
     const char *file = m->heat->options.name;
     if (m->lag > until)
         message_at(
@@ -465,22 +428,15 @@ static void warn_tables(const struct time_run *m) {
     struct warned *warned = &h->options.warned;
     heat_warn_excess(h, m->excess);
     for (uint32_t k = 0; k < h->walls.count; ++k)
-        warn_times(warned, wall_name(&h->walls, k), &h->values.tables.curve[k], h->time.until);
-    warn_times(warned, "--gas-temperature", &h->film.gas_curve, h->time.until);
-    warn_times(warned, "--ambient", &h->given.ambient_curve, h->time.until);
+        warn_times(warned, wall_name(&h->walls, k), &h->values.tables.curve[k], m->now);
+    warn_times(warned, "--gas-temperature", &h->film.gas_curve, m->now);
+    warn_times(warned, "--ambient", &h->given.ambient_curve, m->now);
 }
 
-/* Runs a bed from 0 to --until. */
-static int run_bed(struct time_run *m) {
+int time_report(struct time_run *m) {
     struct heat *h = m->heat;
-    const double begun = progress_clock();
-    const fibrad_heat_config config = choose_beams(m);
-    int status = library_status(m, fibrad_bed_beams(h->made, &config));
-    if (status) return status;
-    fibrad_bed_describe(h->made, &h->facts, NULL);
-    status = absorb_light(m);
-    outside_at(m, 0, m->wall, &m->sources.surroundings);
-    if (!status) status = run_spans(m);
+    int status = find_last_walls(m);
+    if (!status && m->failed) status = message_memory();
     progress_stop(&h->options.progress);
     if (!status && h->options.outputs.picture) {
         memcpy(h->result.temperature, m->span.temperature, h->bed->n * sizeof *m->span.temperature);
@@ -489,54 +445,92 @@ static int run_bed(struct time_run *m) {
             plot_time(&h->options.picture, h->options.name, m->point, m->points,
                       &(struct contents){.bed = h->bed, .walls = &h->walls, .result = &h->result}, &h->options.slice);
     }
-    if (!status) {
-        warn_lag(m);
-        warn_tables(m);
-        print_summary(m, progress_clock() - begun);
+    if (status) return status;
+    warn_lag(m);
+    warn_tables(m);
+    print_summary(m);
+    return STATUS_OK;
+}
+
+/* Sets up the span: what spheres store, and temperatures of gas that change. */
+static int begin_span(struct time_run *m) {
+    struct heat *h = m->heat;
+    const uint32_t n = h->bed->n;
+    double *now = calloc(3 * (size_t)n + 1, sizeof *now), *capacity = NULL;
+    if (!now) return message_memory();
+    memcpy(now, h->sources.temperature, n * sizeof *now);
+    m->sources.temperature = now, m->sources.wall_temperature = m->wall;
+    m->stored = now + n, m->gained = m->stored + n;
+    m->span = (fibrad_span){.temperature = now,
+                            .wall_temperature = m->wall_next,
+                            .wall_end = m->wall_end,
+                            .surroundings = &m->surroundings_next,
+                            .step = h->time.step,
+                            .stored = m->stored,
+                            .observe = note_point,
+                            .wall_energy = m->wall_energy,
+                            .wall_capacity = m->wall_capacity,
+                            .context = m};
+    if (h->film.gas_curve.n > 0) {
+        m->span.gas = h->films.film && !h->sources.stream ? h->films.end : NULL;
+        m->span.wall_gas = h->films.wall_end;
+        m->span.inlet = h->sources.stream ? &h->films.inlet_end : NULL;
     }
+    const int status = find_capacities(m, &capacity);
+    m->span.capacity = capacity;
     return status;
 }
 
-int heat_in_time(struct heat *h) {
-    const uint32_t n = h->bed->n;
+int time_begin(struct time_run *m) {
+    struct heat *h = m->heat;
     fibrad_heat_result *result = &h->result;
-    double *capacity = NULL, *now = calloc(3 * (size_t)n + 1, sizeof *now);
-    if (!now) return message_memory();
-    struct time_run m = {
-        .heat = h, .bed = *h->bed, .sources = h->sources, .square_metres = h->bed->metres * h->bed->metres};
-    memcpy(now, h->sources.temperature, n * sizeof *now);
-    m.bed.frame = 0, m.bed.timestep = -1;
-    m.sources.sigma *= m.square_metres; /* areas are in the bed's unit of length, powers in watts */
-    m.sources.temperature = now, m.sources.wall_temperature = m.wall;
-    m.stored = now + n, m.gained = m.stored + n;
+    m->begun = progress_clock(), m->shown = -1;
+    m->bed = *h->bed, m->sources = h->sources, m->square_metres = h->bed->metres * h->bed->metres;
+    m->bed.frame = 0, m->bed.timestep = -1;
+    m->sources.sigma *= m->square_metres; /* areas are in the bed's unit of length, powers in watts */
     for (uint32_t k = 0; k < h->walls.count; ++k) {
-        m.wall_capacity[k] = h->walls.said[k].capacity;
-        if (m.wall_capacity[k] > 0 && isnan(h->values.wall_power[k])) h->values.wall_power[k] = 0;
+        m->wall_capacity[k] = h->walls.said[k].capacity;
+        if (m->wall_capacity[k] > 0 && isnan(h->values.wall_power[k])) h->values.wall_power[k] = 0;
     }
-    m.span = (fibrad_span){.temperature = now,
-                           .step = h->time.step,
-                           .stored = m.stored,
-                           .observe = note_point,
-                           .wall_energy = m.wall_energy,
-                           .wall_capacity = m.wall_capacity,
-                           .context = &m};
-    if (h->film.gas_curve.n > 0) {
-        m.span.gas = h->films.film && !h->sources.stream ? h->films.end : NULL;
-        m.span.wall_gas = h->films.wall_end;
-        m.span.inlet = h->sources.stream ? &h->films.inlet_end : NULL;
-    }
-    for (uint32_t i = 0; i < n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
+    for (uint32_t i = 0; i < h->bed->n; ++i) result->power_error[i] = result->temperature_error[i] = NAN;
     result->surroundings_error = NAN;
     for (uint32_t k = 0; k < h->walls.count; ++k) result->wall_error[k] = result->wall_temperature_error[k] = NAN;
-    int status = find_capacities(&m, &capacity);
-    m.span.capacity = capacity;
-    if (!status) status = run_bed(&m);
-    free(now);
-    free(m.specific);
-    free(m.store);
-    free(m.store_of);
-    free(m.melted);
-    free(capacity);
-    free(m.point);
+    int status = begin_span(m);
+    if (status) return status;
+    const fibrad_heat_config config = choose_beams(m);
+    status = library_status(m, fibrad_bed_beams(h->made, &config));
+    if (status) return status;
+    fibrad_bed_describe(h->made, &h->facts, NULL);
+    status = absorb_light(m);
+    outside_at(m, 0, m->wall, &m->sources.surroundings);
+    if (!status) note_point(m, 0, m->span.temperature);
+    return status;
+}
+
+void time_end(struct time_run *m) {
+    free(m->span.temperature);
+    free((double *)(uintptr_t)m->span.capacity);
+    free(m->specific);
+    free(m->store);
+    free(m->store_of);
+    free(m->melted);
+    free(m->point);
+}
+
+int heat_in_time(struct heat *h) {
+    struct time_run m = {.heat = h};
+    struct span_end *end = NULL;
+    size_t count = 0;
+    int status = time_begin(&m);
+    if (!status) status = find_times(h, &end, &count);
+    for (size_t k = 0; k < count && !status; ++k) {
+        if (end[k].time > 0) status = time_try(&m, end[k].time);
+        if (!status && end[k].time > 0) time_keep(&m);
+        if (!status && end[k].output) status = time_write(&m);
+    }
+    if (!status) status = time_report(&m);
+    progress_stop(&h->options.progress);
+    free(end);
+    time_end(&m);
     return status;
 }

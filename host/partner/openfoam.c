@@ -32,20 +32,22 @@
 #define FIRST_FILM     10       /* [W/(m2 K)] in a first window in which no face has one */
 #define LONGEST_PAUSE  50000000 /* [ns] between two looks at the lock */
 
+#define GO_ON "status=openfoam\n"
+
 enum { PATHS = 4, CORNERS_MOST = 64, NO_FACE = -1 };
 
 struct patch_face {
     double centre[3], area, size; /* [m] mean of the corners; [m2]; [m] the largest distance of a corner from it */
     double ours;                  /* [m2] area of our triangles at this face */
     double film, behind;          /* [W/(m2 K)] the last one, 0: there was none yet; [K] */
-    double fourth;                /* [m2 K4] sum of area T^4 of our triangles */
+    double fourth;                /* [K4] mean T^4 of our triangles; 0: not known yet */
 };
 
 struct openfoam {
     char folder[OUTPUT_PATH / 4], group[OUTPUT_PATH / 2]; /* group "": not found yet */
     int n;
     struct patch_face *face; /* [n] in the order of rows */
-    int *at;                 /* [exchange->faces.n] the face of each triangle; NO_FACE: its wall takes no part */
+    int *at;                 /* [exchange->faces.n] the face of each triangle */
     bool begun;              /* there was a T.out */
     bool silent;             /* OpenFOAM has not answered in time */
 };
@@ -263,46 +265,45 @@ static double unit_between(double a, double b) {
     return 0;
 }
 
-/* A wall takes part if most of its area is at faces of OpenFOAM. Then all of its triangles must be. Each face must have
- * triangles. */
+/* Each triangle must be at a face, and each face must have triangles. Their areas must be the same. */
 static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
     const struct exchange_faces *faces = &exchange->faces;
-    double all = 0, ours = 0, theirs = 0, unit = 0;
-    char why[300] = "";
     const int status = find_faces(faces, foam);
     if (status) return status;
-    for (int k = 0; k < foam->n; ++k) theirs += foam->face[k].area;
-    for (uint32_t w = 0; w < exchange->walls->count; ++w) {
-        const uint32_t first = faces->first[w], end = faces->first[w + 1];
-        double area = 0, near = 0;
-        for (uint32_t t = first; t < end; ++t)
-            area += faces->area[t], near += foam->at[t] != NO_FACE ? faces->area[t] : 0;
-        for (uint32_t t = first; t < end; ++t)
-            if (near <= area / 2)
-                foam->at[t] = NO_FACE;
-            else if (foam->at[t] != NO_FACE)
-                foam->face[foam->at[t]].ours += faces->area[t];
-            else if (!*why)
-                snprintf(why, sizeof why, "the wall %s has %g m2 that are at no face, as at (%g, %g, %g) m",
-                         wall_name(exchange->walls, w), area - near, faces->centre[t][0], faces->centre[t][1],
-                         faces->centre[t][2]);
-        ours += near > area / 2 ? near : 0;
-        all += area;
-        unit = fmax(unit, unit_between(area, theirs));
+    double ours = 0, theirs = 0;
+    const double *first = NULL; /* what has no partner */
+    uint32_t far = 0, bare = 0;
+    for (uint32_t t = 0; t < faces->n; ++t) {
+        ours += faces->area[t];
+        if (foam->at[t] != NO_FACE)
+            foam->face[foam->at[t]].ours += faces->area[t];
+        else if (far++ == 0)
+            first = faces->centre[t];
     }
-    int bare = 0;
-    for (int k = foam->n; k-- > 0;)
-        if (!(foam->face[k].ours > 0))
-            snprintf(why, sizeof why, "%d of %d faces are at no triangle of the bed, as at (%g, %g, %g) m", ++bare,
-                     foam->n, foam->face[k].centre[0], foam->face[k].centre[1], foam->face[k].centre[2]);
-    if (!*why && !(fabs(ours - theirs) <= AREA_TOLERANCE * theirs))
-        snprintf(why, sizeof why, "the faces have %g m2, and the triangles of the bed at them %g m2", theirs, ours);
-    unit = fmax(unit, unit_between(all, theirs));
-    if (*why && unit > 0)
-        snprintf(why, sizeof why,
-                 "the faces have %g m2, and the meshes of the bed %g m2: two units of length, one %g of the other",
-                 theirs, all, unit);
-    return *why ? message_at(STATUS_INPUT, path_of(foam->group, "patchFaces"), 0, "%s", why) : STATUS_OK;
+    for (int k = 0; k < foam->n; ++k) {
+        theirs += foam->face[k].area;
+        if (!(foam->face[k].ours > 0) && bare++ == 0 && far == 0) first = foam->face[k].centre;
+    }
+    const char *path = path_of(foam->group, "patchFaces");
+    const double unit = unit_between(ours, theirs);
+    if (unit > 0)
+        return message_at(
+            STATUS_INPUT, path, 0,
+            "the faces have %g m2, and the triangles of the bed %g m2: two units of length, one %g of the other",
+            theirs, ours, unit);
+    if (far > 0)
+        return message_at(
+            STATUS_INPUT, path, 0,
+            "%u of %u triangles of the bed are at no face, the first at (%g, %g, %g) m; --faces names walls", far,
+            faces->n, first[0], first[1], first[2]);
+    if (bare > 0)
+        return message_at(STATUS_INPUT, path, 0,
+                          "%u of %d faces are at no triangle of the bed, the first at (%g, %g, %g) m", bare, foam->n,
+                          first[0], first[1], first[2]);
+    if (!(fabs(ours - theirs) <= AREA_TOLERANCE * theirs))
+        return message_at(STATUS_INPUT, path, 0, "the faces have %g m2, and the triangles of the bed %g m2", theirs,
+                          ours);
+    return STATUS_OK;
 }
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
@@ -342,21 +343,24 @@ static int read_rows(struct openfoam *foam) {
     return status;
 }
 
-/* Writes T.in, and then the lock. */
-static int write_rows(const struct exchange *exchange, const char *lock) {
+/* Finds the temperatures of faces: means of T^4 over their triangles. */
+static void take_temperatures(const struct exchange *exchange) {
     struct openfoam *foam = exchange->state;
-    struct output file;
+    const struct exchange_faces *faces = &exchange->faces;
     for (int k = 0; k < foam->n; ++k) foam->face[k].fourth = 0;
-    for (uint32_t t = 0; foam->at && t < exchange->faces.n; ++t)
-        if (foam->at[t] != NO_FACE)
-            foam->face[foam->at[t]].fourth += exchange->faces.area[t] * pow(exchange->faces.found[t], 4);
+    for (uint32_t t = 0; t < faces->n; ++t) {
+        struct patch_face *face = &foam->face[foam->at[t]];
+        face->fourth += faces->area[t] / face->ours * pow(faces->found[t], 4);
+    }
+}
+
+/* Writes T.in, and then the lock. After an error in `begin` faces have no temperature yet and are insulated. */
+static int write_rows(const struct openfoam *foam, const char *lock) {
+    struct output file;
     int status = output_open(&file, path_of(foam->group, "T.in"));
     if (status) return status;
-    for (int k = 0; k < foam->n; ++k) /* after an error a face may have no triangle: insulated */
-        if (foam->face[k].ours > 0)
-            fprintf(file.file, "%.17g 0 1\n", sqrt(sqrt(foam->face[k].fourth / foam->face[k].ours)));
-        else
-            fputs("300 0 0\n", file.file);
+    for (int k = 0; k < foam->n; ++k)
+        fprintf(file.file, "%.17g 0 %d\n", sqrt(sqrt(foam->face[k].fourth)), foam->face[k].fourth > 0);
     status = output_close(&file, STATUS_OK);
     if (!status) status = output_open(&file, path_of(foam->folder, "OpenFOAM.lock"));
     if (status) return status;
@@ -366,28 +370,34 @@ static int write_rows(const struct exchange *exchange, const char *lock) {
 
 /* ---- the partner ------------------------------------------------------------------------------------------------- */
 
-static int openfoam_begin(struct exchange *exchange) {
-    struct stat there;
-    enum turn turn;
+static int openfoam_plan(struct exchange *exchange) {
+    exchange->name = "OpenFOAM";
     struct openfoam *foam = exchange->state = calloc(1, sizeof *foam);
     if (!foam) return message_memory();
-    if (stat(exchange->folder, &there) != 0) return message_at(STATUS_FILE, exchange->folder, 0, "%s", strerror(errno));
     const bool is_case = access(path_of(exchange->folder, "system/controlDict"), F_OK) == 0;
-    if (snprintf(foam->folder, sizeof foam->folder, "%s%s", exchange->folder, is_case ? "/comms" : "") >=
-        (int)sizeof foam->folder)
+    if (access(exchange->folder, X_OK) != 0) return message_at(STATUS_FILE, exchange->folder, 0, "%s", strerror(errno));
+    if (strlen(exchange->folder) > OUTPUT_PATH / 4 - sizeof "/comms")
         return message(STATUS_USAGE, "--openfoam: the path is too long");
+    snprintf(foam->folder, sizeof foam->folder, "%s%s", exchange->folder, is_case ? "/comms" : "");
+    return STATUS_OK;
+}
+
+static int openfoam_begin(struct exchange *exchange) {
+    struct openfoam *foam = exchange->state;
+    enum turn turn;
     int status = wait_for_turn(exchange, &turn);
     if (!status) status = read_faces(foam);
-    return status ? status : match_faces(exchange, foam);
+    if (!status) status = match_faces(exchange, foam);
+    if (!status) take_temperatures(exchange);
+    return status;
 }
 
 static int openfoam_next(struct exchange *exchange) {
     struct openfoam *foam = exchange->state;
-    struct exchange_faces *faces = &exchange->faces;
     enum turn turn;
     int status;
     while (!(status = wait_for_turn(exchange, &turn)) && turn == FIRST)
-        if ((status = write_rows(exchange, "status=openfoam\n"))) return status;
+        if ((status = write_rows(foam, GO_ON))) return status;
     exchange->length = turn == NOBODYS ? 0 : exchange->window;
     if (!status && turn == OURS) status = read_rows(foam);
     if (status || turn == NOBODYS) return status;
@@ -395,19 +405,19 @@ static int openfoam_next(struct exchange *exchange) {
     int n = 0;
     for (int k = 0; k < foam->n; ++k)
         if (foam->face[k].film > 0) mean += (foam->face[k].film - mean) / ++n;
-    for (uint32_t t = 0; t < faces->n; ++t)
-        if (foam->at[t] != NO_FACE) { /* watts are those of OpenFOAM, if areas differ */
-            const struct patch_face *face = &foam->face[foam->at[t]];
-            const double film = face->film > 0 ? face->film : n > 0 ? mean : FIRST_FILM;
-            faces->film[t] = film * face->area / face->ours;
-            faces->behind[t] = face->behind;
-        }
+    for (uint32_t t = 0; t < exchange->faces.n; ++t) { /* watts are those of OpenFOAM, if areas differ */
+        const struct patch_face *face = &foam->face[foam->at[t]];
+        const double film = face->film > 0 ? face->film : n > 0 ? mean : FIRST_FILM;
+        exchange->faces.film[t] = film * face->area / face->ours;
+        exchange->faces.behind[t] = face->behind;
+    }
     return STATUS_OK;
 }
 
 static int openfoam_give(struct exchange *exchange, bool *again) {
     *again = false;
-    return write_rows(exchange, "status=openfoam\n");
+    take_temperatures(exchange);
+    return write_rows(exchange->state, GO_ON);
 }
 
 /* Asks OpenFOAM to end if it has not. After an error it writes no results. */
@@ -415,9 +425,9 @@ static int openfoam_end(struct exchange *exchange, int status) {
     struct openfoam *foam = exchange->state;
     if (!foam) return status;
     enum turn turn = THEIRS;
-    int ending = foam->silent || !*foam->folder;
+    int ending = foam->silent || !*foam->group;
     while (!ending && !(ending = wait_for_turn(exchange, &turn)) && turn != NOBODYS)
-        ending = write_rows(exchange, status ? "action=noWriteNow\n" : "action=writeNow\n");
+        ending = write_rows(foam, status ? "action=noWriteNow\n" : "action=writeNow\n");
     free(foam->face);
     free(foam->at);
     free(foam);
@@ -425,4 +435,5 @@ static int openfoam_end(struct exchange *exchange, int status) {
     return status ? status : ending;
 }
 
-const struct partner partner_openfoam = {openfoam_begin, openfoam_next, openfoam_give, openfoam_end};
+const struct partner partner_openfoam = {openfoam_plan, NULL,          openfoam_begin,
+                                         openfoam_next, openfoam_give, openfoam_end};

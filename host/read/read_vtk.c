@@ -217,7 +217,7 @@ static int want(struct vtk_file *file) {
 
 /* Goes through the files of the next time, and reads them if there is a vtk_file. */
 static int next_time(struct source *source, struct vtk_file *reads) {
-    char first[VTK_WORD], time[VTK_WORD], name[VTK_WORD];
+    char first[XML_WORD], time[XML_WORD], name[XML_WORD];
     bool more;
     int status = STATUS_OK;
     source->found = FOUND_END;

@@ -342,7 +342,8 @@ typedef struct fibrad_store {
  *
  * With `store` the field `capacity` has masses in kg. From one span to the next `melted` then keeps the fraction of
  * each sphere that has melted. A sphere of infinite capacity is held: its temperature stays. held_energy is what held
- * spheres gain, their powers included.
+ * spheres gain, their powers included. side_energy of a wall's sides adds up to its wall_energy, and convected_energy
+ * to -gas_energy less what walls gain by films, all to rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
  * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own. */
@@ -359,6 +360,7 @@ typedef struct fibrad_span {
     const double *wall_temperature; /* K, [walls], at the end, linear in between; NULL: constant */
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
+    const double *side_temperature, *side_gas; /* K, [2 triangles], at the end, linear in between; NULL: constant */
     const double *inlet;          /* K, one number, inlet of a stream at the end, linear in between; NULL: constant */
     double step;                  /* s; all steps are equal and at most this long; 0: automatic steps */
     double tolerance;             /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
@@ -369,6 +371,9 @@ typedef struct fibrad_span {
     double surroundings_energy;   /* J, out: gained during the span */
     double gas_power, gas_energy; /* W and J, out: the same of the gas of all films */
     double held_energy;           /* J, out: gained by held spheres during the span */
+    double *convected_energy;     /* J, [spheres], out: gained from gas during the span; may be NULL */
+    double *side_energy;          /* J, [2 triangles], out: gained by radiation during the span; may be NULL */
+    double *side_end;             /* K, [2 triangles], out: temperatures at the end; may be NULL */
     double *stored;               /* J, [spheres], out: heat stored during the span; of held spheres 0; may be NULL */
     fibrad_law *law;              /* called in each stage; NULL: emissivities are constant */
     fibrad_observe *observe;      /* NULL: none */
@@ -387,8 +392,8 @@ typedef struct fibrad_span {
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * or if there are contacts, films or clumps. They do, too, if the temperature of a wall is to be found, as that of a
- * wall with a capacity is.
+ * or if there are contacts, films or clumps. They do, too, if the temperature of a wall or of a side is to be found, as
+ * that of a wall with a capacity is, or if convected_energy, side_energy or side_end is wanted.
  *
  * The members of a clump begin at one temperature, equally melted. They have the same store. All or none are held.
  *
@@ -397,7 +402,8 @@ typedef struct fibrad_span {
  *   power                               constant
  *   emissivity, wall_emissivity         constant, or where a law begins
  *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: a wall's is to be found
- *   wall_power, insulated, side_temperature    constant
+ *   side_temperature, side_gas          at the beginning of the span
+ *   wall_power, insulated, side_film, side_power    constant
  *   conductivity, conductance, film, wall_film    constant, or changed by a law; contacts act on means of surfaces
  *   stream                              inlet: at the beginning of the span; gas: out, at the end
  *   sigma, sweeps_max                   as for fibrad_bed_solve

@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "text/xml.h"
+
 /* The type of the values of an array. */
 struct vtk_type {
     size_t size;       /* bytes; 0: unknown */
@@ -45,8 +47,7 @@ int vtk_read_xml(struct vtk_grid *grid);
 
 /* Finds the next DataSet of a text, and moves *text behind it: the file that it names, and the time. False: there is
  * none. */
-enum { VTK_WORD = 1000 };
-bool vtk_next_set(const char **text, char time[VTK_WORD], char file[VTK_WORD]);
+bool vtk_next_set(const char **text, char time[XML_WORD], char file[XML_WORD]);
 
 /* The type by its name in a legacy or XML file. size 0: there is none. */
 struct vtk_type vtk_find_type(const char *name);

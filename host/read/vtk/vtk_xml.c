@@ -13,9 +13,10 @@
 
 #include "cli/message.h"
 #include "text/read_number.h"
+#include "text/xml.h"
 #include "read/vtk/vtk_grid.h"
 
-enum { WORD = VTK_WORD, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
+enum { WORD = XML_WORD, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
 
 struct xml {
     struct vtk_grid *grid;
@@ -31,11 +32,6 @@ struct xml {
     uint64_t all;            /* points of all pieces so far */
 };
 
-/* A tag, without its < and >. */
-struct tag {
-    const char *text, *end;
-};
-
 /* Type, length and place of an array. */
 struct place {
     struct vtk_type type;
@@ -46,58 +42,20 @@ struct place {
 
 #define xml_fail(xml, ...) vtk_fail((xml)->grid, (xml)->at, __VA_ARGS__)
 
-static bool is_tag(const struct tag *tag, const char *name) {
-    const size_t length = strlen(name);
-    return (size_t)(tag->end - tag->text) >= length && memcmp(tag->text, name, length) == 0 &&
-           (tag->text + length == tag->end || !isalnum((unsigned char)tag->text[length]));
-}
-
-/* Finds the next tag and moves behind it. False: there is none. */
-static bool next_tag(struct xml *xml, struct tag *tag) {
-    const char *last = xml->grid->end, *open = memchr(xml->at, '<', (size_t)(last - xml->at));
-    if (!open) return false;
-    char quote = 0;
-    for (const char *c = tag->text = open + 1; c < last; ++c) {
-        if (!quote && *c == '>') {
-            tag->end = c;
-            xml->at = c + 1;
-            return true;
-        }
-        if (*c == '"' || *c == '\'') quote = quote == *c ? 0 : quote ? quote : *c;
-    }
-    return false;
-}
-
-/* The value of an attribute, of at most WORD - 1 characters. "": the tag does not have the attribute. */
-static const char *attribute(const struct tag *tag, const char *name, char value[WORD]) {
-    const size_t length = strlen(name);
-    value[0] = 0;
-    for (const char *c = tag->text; c + length + 2 < tag->end; ++c) {
-        if (!isspace((unsigned char)*c) || memcmp(c + 1, name, length) != 0 || c[length + 1] != '=') continue;
-        const char *from = c + length + 3;
-        size_t size = 0;
-        while (from + size < tag->end && from[size] != from[-1] && size < WORD - 1) ++size;
-        memcpy(value, from, size);
-        value[size] = 0;
-        break;
-    }
-    return value;
-}
-
-bool vtk_next_set(const char **text, char time[VTK_WORD], char file[VTK_WORD]) {
+bool vtk_next_set(const char **text, char time[XML_WORD], char file[XML_WORD]) {
     const char *set = strstr(*text, "<DataSet");
     if (!set) return false;
-    const struct tag tag = {set, set + strcspn(set, ">")};
-    attribute(&tag, "timestep", time);
-    attribute(&tag, "file", file);
+    const struct xml_tag tag = {set, set + strcspn(set, ">")};
+    xml_attribute(&tag, "timestep", time);
+    xml_attribute(&tag, "file", file);
     *text = tag.end;
     return true;
 }
 
-static uint64_t number_of(const struct tag *tag, const char *name, uint64_t otherwise) {
+static uint64_t number_of(const struct xml_tag *tag, const char *name, uint64_t otherwise) {
     char value[WORD];
     int64_t number;
-    return number_read_whole(attribute(tag, name, value), &number) && number >= 0 ? (uint64_t)number : otherwise;
+    return number_read_whole(xml_attribute(tag, name, value), &number) && number >= 0 ? (uint64_t)number : otherwise;
 }
 
 /* ---- bytes ------------------------------------------------------------------------------------------------------ */
@@ -212,18 +170,18 @@ static int take_values(struct xml *xml, const struct place *place, double **valu
 
 /* ---- tags ------------------------------------------------------------------------------------------------------- */
 
-static int xml_file(struct xml *xml, const struct tag *tag) {
+static int xml_file(struct xml *xml, const struct xml_tag *tag) {
     char value[WORD];
-    attribute(tag, "type", value);
+    xml_attribute(tag, "type", value);
     xml->parallel = strcmp(value, "PPolyData") == 0 || strcmp(value, "PUnstructuredGrid") == 0 ||
                     strcmp(value, "vtkMultiBlockDataSet") == 0;
     if (xml->parallel && !xml->grid->open) return xml_fail(xml, "pieces of pieces have no points, but pieces");
     if (!xml->parallel && strcmp(value, "PolyData") != 0 && strcmp(value, "UnstructuredGrid") != 0)
         return vtk_fail(xml->grid, NULL, "this is a VTK file of type %.40s: it has no spheres", value);
-    xml->big = strcmp(attribute(tag, "byte_order", value), "BigEndian") == 0;
-    if (*attribute(tag, "header_type", value)) xml->header = vtk_find_type(value);
+    xml->big = strcmp(xml_attribute(tag, "byte_order", value), "BigEndian") == 0;
+    if (*xml_attribute(tag, "header_type", value)) xml->header = vtk_find_type(value);
     if (xml->header.kind != 'u') return xml_fail(xml, "the header_type is not known");
-    attribute(tag, "compressor", value);
+    xml_attribute(tag, "compressor", value);
     xml->packed = *value != 0;
     if (xml->packed && strcmp(value, "vtkZLibDataCompressor") != 0)
         return xml_fail(xml, "its arrays are packed by %.40s; only arrays packed by zlib can be read", value);
@@ -231,14 +189,14 @@ static int xml_file(struct xml *xml, const struct tag *tag) {
 }
 
 /* Ends the piece before, and begins another one. */
-static int take_piece(struct xml *xml, const struct tag *tag) {
+static int take_piece(struct xml *xml, const struct xml_tag *tag) {
     const uint64_t n = number_of(tag, "NumberOfPoints", 0), most = (uint64_t)(xml->grid->end - xml->grid->text);
     char source[WORD];
     const int status = xml->within ? vtk_end_piece(xml->grid) : STATUS_OK;
     xml->within = !xml->parallel;
     if (status) return status;
     if (xml->parallel) {
-        if (!*attribute(tag, "Source", source)) return xml_fail(xml, "a piece has no Source");
+        if (!*xml_attribute(tag, "Source", source)) return xml_fail(xml, "a piece has no Source");
         return xml->grid->open(source, xml->grid->context);
     }
     if (n > UINT32_MAX) return xml_fail(xml, "too many points");
@@ -249,16 +207,16 @@ static int take_piece(struct xml *xml, const struct tag *tag) {
     return STATUS_OK;
 }
 
-static int xml_array(struct xml *xml, const struct tag *tag) {
+static int xml_array(struct xml *xml, const struct xml_tag *tag) {
     char name[WORD], format[WORD], type[WORD];
     const uint64_t components = number_of(tag, "NumberOfComponents", 1);
-    attribute(tag, "Name", name);
-    attribute(tag, "format", format);
+    xml_attribute(tag, "Name", name);
+    xml_attribute(tag, "format", format);
     double *values = NULL;
     if (xml->grid->n == 0 || !(xml->points || vtk_wants(xml->grid, name))) return STATUS_OK;
     if (components != (xml->points ? 3 : 1))
         return xml_fail(xml, "the array %.40s has %" PRIu64 " components", name, components);
-    struct place place = {.type = vtk_find_type(attribute(tag, "type", type)), .count = components * xml->grid->n};
+    struct place place = {.type = vtk_find_type(xml_attribute(tag, "type", type)), .count = components * xml->grid->n};
     place.at = xml->at, place.text = strcmp(format, "ascii") == 0;
     if (place.type.size == 0) return xml_fail(xml, "arrays of type %.40s cannot be read", type);
     if (strcmp(format, "appended") == 0) {
@@ -275,25 +233,26 @@ static int xml_array(struct xml *xml, const struct tag *tag) {
     return status;
 }
 
-static int xml_tag(struct xml *xml, const struct tag *tag) {
+static int xml_tag(struct xml *xml, const struct xml_tag *tag) {
     char file[WORD];
-    if (is_tag(tag, "VTKFile")) return xml_file(xml, tag);
-    if (is_tag(tag, "Piece")) return take_piece(xml, tag);
-    if (is_tag(tag, "DataSet") && xml->parallel && *attribute(tag, "file", file)) /* a block without a file is empty */
+    if (xml_is(tag, "VTKFile")) return xml_file(xml, tag);
+    if (xml_is(tag, "Piece")) return take_piece(xml, tag);
+    if (xml_is(tag, "DataSet") && xml->parallel &&
+        *xml_attribute(tag, "file", file)) /* a block without a file is empty */
         return xml->grid->open(file, xml->grid->context);
     if (!xml->within) return STATUS_OK;
-    if (is_tag(tag, "DataArray") && (xml->points || xml->point_data)) return xml_array(xml, tag);
+    if (xml_is(tag, "DataArray") && (xml->points || xml->point_data)) return xml_array(xml, tag);
     const bool begins = *tag->text != '/' && tag->end[-1] != '/';
-    const struct tag rest = {tag->text + (*tag->text == '/'), tag->end};
-    if (is_tag(&rest, "Points")) xml->points = begins;
-    if (is_tag(&rest, "PointData")) xml->point_data = begins;
+    const struct xml_tag rest = {tag->text + (*tag->text == '/'), tag->end};
+    if (xml_is(&rest, "Points")) xml->points = begins;
+    if (xml_is(&rest, "PointData")) xml->point_data = begins;
     return STATUS_OK;
 }
 
 /* Finds the appended arrays, which begin behind the first _ after the tag AppendedData. */
 static void find_appended(struct xml *xml) {
     static const char name[] = "<AppendedData";
-    struct tag tag;
+    struct xml_tag tag;
     char encoding[WORD];
     const char *from = xml->at;
     const size_t length = strlen(name);
@@ -304,17 +263,17 @@ static void find_appended(struct xml *xml) {
     if (!from) return;
     struct xml behind = *xml;
     behind.at = from;
-    if (!next_tag(&behind, &tag)) return;
+    if (!xml_next(&behind.at, xml->grid->end, &tag)) return;
     const char *mark = memchr(behind.at, '_', (size_t)(xml->grid->end - behind.at));
-    xml->raw = strcmp(attribute(&tag, "encoding", encoding), "raw") == 0;
+    xml->raw = strcmp(xml_attribute(&tag, "encoding", encoding), "raw") == 0;
     xml->appended = mark ? mark + 1 : NULL;
 }
 
 int vtk_read_xml(struct vtk_grid *grid) {
     struct xml xml = {.grid = grid, .at = grid->text, .header = vtk_find_type("UInt32")};
-    struct tag tag;
+    struct xml_tag tag;
     find_appended(&xml);
-    while (next_tag(&xml, &tag) && !is_tag(&tag, "AppendedData")) {
+    while (xml_next(&xml.at, grid->end, &tag) && !xml_is(&tag, "AppendedData")) {
         const int status = xml_tag(&xml, &tag);
         if (status) return status;
     }

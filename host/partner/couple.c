@@ -1,0 +1,297 @@
+/* couple.c - a bed that goes through time together with another solver. SPDX-License-Identifier: MIT */
+#include <gsl/gsl_math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/message.h"
+#include "heat/time_run.h"
+#include "partner/partner.h"
+
+/* When a window is repeated, its result must change smoothly with what the partner gives. Then the steps are those of
+ * the first time, and solutions are this much more accurate. */
+#define REPEATED_TOLERANCE 1e-6
+#define REPEATED_RESIDUAL  1e-10
+
+#define FILM_LEAST 1e-6 /* [W/(m2 K)] stands for 0: the face is insulated */
+
+struct coupling {
+    struct time_run run;
+    struct exchange *exchange;
+    double *side[6],
+        *saved;            /* of the library: [2 triangles] each; temperatures and melted fractions at the beginning */
+    double *gas_begun;     /* [spheres] [K] */
+    double every, written; /* [s] from one output to the next; time of the last one */
+    double faces_energy;   /* [J] gained by faces since the beginning */
+    uint64_t windows, iterations, tries; /* tries: of the window in hand */
+};
+enum { SIDE_BEGUN, SIDE_END, SIDE_FILM, BEHIND_BEGUN, BEHIND_END, SIDE_ENERGY };
+
+/* ---- faces and particles ----------------------------------------------------------------------------------------- */
+
+static bool is_wall_side(const struct meshes *meshes, uint32_t triangle, uint32_t wall) {
+    return meshes->front[triangle] == wall || meshes->back[triangle] == wall;
+}
+
+/* Chooses the walls by their names. */
+static int choose_walls(struct exchange *e) {
+    const struct walls *walls = e->walls;
+    for (uint32_t k = 0; k < walls->count; ++k)
+        e->exchanged[k] = !e->wall_names && walls->wall[k].kind == FIBRAD_WALL_MESH;
+    for (const char *name = e->wall_names; name && *name; name += strcspn(name, ","), name += *name == ',') {
+        char one[MESH_NAME];
+        snprintf(one, sizeof one, "%.*s", (int)strcspn(name, ","), name);
+        const uint32_t k = wall_index(walls, one);
+        if (k == WALLS_MAX || walls->wall[k].kind != FIBRAD_WALL_MESH)
+            return message(STATUS_USAGE, "--faces: there is no wall of triangles %s", one);
+        e->exchanged[k] = true;
+    }
+    return STATUS_OK;
+}
+
+/* A wall whose faces are exchanged has one emissivity above 0, and a temperature with which it begins. */
+static int check_walls(const struct heat *h, const struct exchange *e) {
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        const char *name = wall_name(&h->walls, k);
+        if (!e->exchanged[k]) continue;
+        if (isnan(h->values.wall_temperature[k]) || h->values.insulated[k])
+            return message(STATUS_USAGE, "--wall: %s has faces of %s and needs the temperature at which it begins, %s",
+                           name, e->name, "temperature=300 for example");
+        if (h->walls.said[k].given & (WALL_CAPACITY | WALL_CONVECTION))
+            return message(STATUS_USAGE,
+                           "--wall: %s has faces of %s, which stores and carries away its heat; leave "
+                           "out capacity and convection",
+                           name, e->name);
+    }
+    return STATUS_OK;
+}
+
+static int make_faces(struct heat *h, struct exchange *e) {
+    struct exchange_faces *f = &e->faces;
+    const struct meshes *meshes = h->walls.meshes;
+    const uint32_t triangles = meshes ? meshes->triangles.n : 0;
+    double *block = calloc(9 * (size_t)triangles + 1, sizeof *block);
+    f->triangle = calloc(triangles + (size_t)1, sizeof *f->triangle);
+    f->centre = (double(*)[3])block, f->area = block + 3 * (size_t)triangles;
+    if (!block || !f->triangle) return message_memory();
+    double **const array[] = {&f->temperature, &f->film, &f->behind, &f->energy, &f->found};
+    for (size_t a = 0; a < 5; ++a) *array[a] = f->area + (a + 1) * triangles;
+    for (uint32_t t = 0; t < 3 * triangles; ++t) f->temperature[t] = NAN;
+    for (uint32_t k = 0; k < h->walls.count; ++k) {
+        f->first[k] = f->n;
+        for (uint32_t t = 0; t < triangles && e->exchanged[k]; ++t) {
+            if (!is_wall_side(meshes, t, k)) continue;
+            const struct mesh *mesh = mesh_of_triangle(meshes, t);
+            const uint32_t own = t - mesh->first;
+            for (int c = 0; c < 3; ++c)
+                for (int x = 0; x < 3; ++x)
+                    f->centre[f->n][x] += surface_corner(&mesh->surface, own, c)[x] / 3 * h->bed->metres;
+            f->area[f->n] = surface_area(&mesh->surface, own) * gsl_pow_2(h->bed->metres);
+            const double *side = h->values.side_temperature;
+            f->found[f->n] = side && !isnan(side[2 * t]) ? side[2 * t] : h->values.wall_temperature[k];
+            f->triangle[f->n++] = t;
+        }
+    }
+    for (uint32_t k = h->walls.count; k <= WALLS_MAX; ++k) f->first[k] = f->n;
+    return STATUS_OK;
+}
+
+static int make_particles(struct heat *h, struct exchange *e) {
+    struct exchange_particles *p = &e->particles;
+    const struct bed *bed = h->bed;
+    double *block = calloc(7 * (size_t)bed->n + 1, sizeof *block);
+    p->n = bed->n, p->centre = (double(*)[3])block;
+    if (!block) return message_memory();
+    p->gas = block + 3 * (size_t)bed->n, p->film = p->gas + bed->n, p->energy = p->film + bed->n;
+    p->found = p->energy + bed->n;
+    for (uint32_t i = 0; i < bed->n; ++i) {
+        const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
+        for (int x = 0; x < 3; ++x) p->centre[i][x] = at[x] * bed->metres;
+        p->found[i] = h->values.temperature[i];
+    }
+    return STATUS_OK;
+}
+
+/* A wall that the partner has is not one body of one temperature, to which a contact could conduct: such contacts carry
+ * nothing. A contact of a sphere with itself is none. */
+static void leave_contacts(struct heat *h, const struct exchange *e) {
+    uint32_t left = 0;
+    for (uint32_t k = 0; k < h->touching.n; ++k) {
+        const uint32_t end = h->touching.second[k];
+        if (end < h->bed->n || !e->exchanged[end - h->bed->n]) continue;
+        h->touching.second[k] = h->touching.first[k], ++left;
+    }
+    if (left > 0) message(STATUS_OK, "warning: %u contacts with faces of %s carry no heat", left, e->name);
+}
+
+/* Points the run to the arrays of sides and gas. */
+static int make_sides(struct coupling *c) {
+    struct time_run *m = &c->run;
+    struct heat *h = m->heat;
+    const size_t sides = h->walls.meshes ? 2 * (size_t)h->walls.meshes->triangles.n : 0, n = h->bed->n;
+    double *block = malloc((7 * sides + 4 * n + 1) * sizeof *block);
+    if (!block) return message_memory();
+    for (size_t a = 0; a < 6; ++a) c->side[a] = block + a * sides;
+    for (size_t s = 0; s < 7 * sides; ++s) block[s] = NAN;
+    for (size_t s = 0; s < sides; ++s) c->side[SIDE_FILM][s] = 0;
+    if (h->values.side_temperature)
+        for (int a = SIDE_BEGUN; a <= SIDE_END; ++a)
+            memcpy(c->side[a], h->values.side_temperature, sides * sizeof *block);
+    m->sources.side_temperature = c->side[SIDE_BEGUN], m->span.side_temperature = c->side[SIDE_END];
+    m->sources.side_film = c->side[SIDE_FILM];
+    m->sources.side_gas = c->side[BEHIND_BEGUN], m->span.side_gas = c->side[BEHIND_END];
+    m->span.side_energy = c->side[SIDE_ENERGY], m->span.side_end = block + 6 * sides;
+    c->saved = block + 7 * sides, c->gas_begun = c->saved + 2 * n;
+    m->span.convected_energy = c->gas_begun + n;
+    if (c->exchange->gives_gas) m->sources.gas = c->gas_begun, m->span.gas = h->films.end;
+    return STATUS_OK;
+}
+
+/* ---- one window -------------------------------------------------------------------------------------------------- */
+
+/* Sets what the partner gives, at the end of the window. In the first window it counts from the beginning. */
+static void set_given(struct coupling *c) {
+    struct exchange *e = c->exchange;
+    struct heat *h = c->run.heat;
+    const struct exchange_faces *f = &e->faces;
+    const bool first = c->windows == 0;
+    for (uint32_t k = 0; k < f->n; ++k)
+        for (size_t s = 2 * (size_t)f->triangle[k]; s < 2 * (size_t)f->triangle[k] + 2; ++s) {
+            const bool film = f->film[k] >= 0; /* not NaN */
+            c->side[SIDE_FILM][s] = film ? fmax(f->film[k], FILM_LEAST) * c->run.square_metres : 0;
+            c->side[SIDE_END][s] = film ? NAN : f->temperature[k], c->side[BEHIND_END][s] = f->behind[k];
+            if (first || film) c->side[SIDE_BEGUN][s] = c->side[SIDE_END][s];
+            if (first) c->side[BEHIND_BEGUN][s] = c->side[BEHIND_END][s];
+        }
+    for (uint32_t i = 0; i < e->particles.n && e->gives_gas; ++i) {
+        h->films.end[i] = e->particles.gas[i];
+        if (first) c->gas_begun[i] = h->films.end[i];
+        if (e->gives_film) h->films.film[i] = e->particles.film[i] * heat_area(h, i) * h->films.per_watt;
+    }
+}
+
+/* The temperature of a face: the mean of T^4 over its sides that are walls. */
+static double face_temperature(const double side[2]) {
+    if (isnan(side[0]) || isnan(side[1])) return isnan(side[0]) ? side[1] : side[0];
+    return pow((gsl_pow_4(side[0]) + gsl_pow_4(side[1])) / 2, 0.25);
+}
+
+/* Takes what the bed has found at the end of a window. */
+static void take_found(struct coupling *c) {
+    struct exchange *e = c->exchange;
+    const fibrad_span *span = &c->run.span;
+    for (uint32_t k = 0; k < e->faces.n; ++k) {
+        const size_t s = 2 * (size_t)e->faces.triangle[k];
+        e->faces.found[k] = face_temperature(span->side_end + s);
+        e->faces.energy[k] = (isnan(span->side_energy[s]) ? 0 : span->side_energy[s]) +
+                             (isnan(span->side_energy[s + 1]) ? 0 : span->side_energy[s + 1]);
+    }
+    for (uint32_t i = 0; i < e->particles.n; ++i)
+        e->particles.found[i] = span->temperature[i], e->particles.energy[i] = -span->convected_energy[i];
+}
+
+/* Saves the state at the beginning of a window, or goes back to it. */
+static void keep_state(struct coupling *c, bool back) {
+    const fibrad_span *span = &c->run.span;
+    const size_t n = c->run.heat->bed->n;
+    double *const state[2] = {span->temperature, span->melted};
+    for (size_t a = 0; a < 2; ++a)
+        if (state[a])
+            memcpy(back ? state[a] : c->saved + a * n, back ? c->saved + a * n : state[a], n * sizeof **state);
+}
+
+static int try_window(struct coupling *c) {
+    struct time_run *m = &c->run;
+    struct exchange *e = c->exchange;
+    const size_t points = m->points;
+    if (c->tries == 0) keep_state(c, false);
+    if (c->tries == 1) {
+        m->span.step = m->heat->time.step > 0 ? m->heat->time.step : e->length / (double)m->span.steps;
+        m->span.tolerance = REPEATED_TOLERANCE, m->sources.tolerance = REPEATED_RESIDUAL;
+    }
+    ++c->tries, ++c->iterations;
+    set_given(c);
+    const int status = time_try(m, m->now + e->length);
+    take_found(c);
+    if (e->implicit) m->points = points;
+    return status;
+}
+
+/* Ends a window: what is at its end is at the beginning of the next one. */
+static void end_window(struct coupling *c) {
+    struct time_run *m = &c->run;
+    struct heat *h = m->heat;
+    struct report *report = &h->options.report;
+    const size_t sides = h->walls.meshes ? 2 * (size_t)h->walls.meshes->triangles.n : 0;
+    double faces = 0, stored = 0;
+    time_keep(m);
+    m->span.step = h->time.step, m->span.tolerance = m->sources.tolerance = 0;
+    for (size_t s = 0; s < sides; ++s)
+        c->side[SIDE_BEGUN][s] = c->side[SIDE_END][s], c->side[BEHIND_BEGUN][s] = c->side[BEHIND_END][s];
+    if (c->exchange->gives_gas) memcpy(c->gas_begun, h->films.end, h->bed->n * sizeof *c->gas_begun);
+    for (uint32_t k = 0; k < c->exchange->faces.n; ++k) faces += c->exchange->faces.energy[k];
+    for (uint32_t i = 0; i < h->bed->n; ++i) stored += m->stored[i];
+    c->faces_energy += faces;
+    report_begin(report);
+    report_count(report, "window", c->windows++);
+    report_value(report, "time_s", m->now, 9);
+    report_count(report, "iterations", c->tries);
+    report_count(report, "steps", m->span.steps);
+    report_value(report, "faces_J", faces, 9);
+    report_value(report, "gas_J", m->span.gas_energy, 9);
+    wall_values_report(&h->walls, m->wall_energy, "_J", 9, report);
+    report_value(report, "surroundings_J", m->span.surroundings_energy, 9);
+    report_value(report, "stored_J", stored, 9);
+    report_end(report);
+    c->tries = 0;
+}
+
+/* ---- the run ----------------------------------------------------------------------------------------------------- */
+
+static int write_now(struct coupling *c) {
+    c->written = c->run.now;
+    return time_write(&c->run);
+}
+
+/* Goes through all windows. A status of the bed is returned; one of the partner is *ended. */
+static int run_windows(struct coupling *c, const struct partner *partner, int *ended) {
+    struct exchange *e = c->exchange;
+    int status = STATUS_OK;
+    for (;;) {
+        bool again = false;
+        *ended = partner->next(e);
+        if (*ended || e->length == 0) return STATUS_OK;
+        status = try_window(c);
+        if (!status) *ended = partner->give(e, &again);
+        if (status || *ended) return status;
+        if (again) {
+            keep_state(c, true);
+            continue;
+        }
+        end_window(c);
+        if (c->every > 0 && c->run.now - c->written >= c->every * (1 - 1e-9)) status = write_now(c);
+        if (status) return status;
+    }
+}
+
+int couple_run(struct heat *h, const struct partner *partner, struct exchange *e, double every, int *ended) {
+    struct coupling c = {.run.heat = h, .exchange = e, .every = every};
+    e->walls = &h->walls;
+    int status = partner->choose ? partner->choose(e) : choose_walls(e);
+    if (!status) status = check_walls(h, e);
+    if (!status) status = make_faces(h, e);
+    if (!status) status = make_particles(h, e);
+    if (!status) leave_contacts(h, e);
+    if (!status) status = time_begin(&c.run);
+    if (!status) status = make_sides(&c);
+    if (!status) status = partner->begin(e);
+    if (!status) status = run_windows(&c, partner, ended);
+    if (!status && c.windows > 0 && c.written < c.run.now) status = write_now(&c);
+    if (!status && c.windows > 0) status = time_report(&c.run);
+    progress_stop(&h->options.progress);
+    time_end(&c.run);
+    free(c.side[0]);
+    free(e->faces.centre);
+    free(e->faces.triangle);
+    free(e->particles.centre);
+    return status;
+}
