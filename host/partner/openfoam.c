@@ -30,6 +30,7 @@
 
 #define AREA_TOLERANCE 0.02     /* of areas that should be the same */
 #define FIRST_FILM     10       /* [W/(m2 K)] in a first window in which no face has one */
+#define TIMEOUT_OF_END 60       /* [s] after an error */
 #define LONGEST_PAUSE  50000000 /* [ns] between two looks at the lock */
 
 #define GO_ON "status=openfoam\n"
@@ -40,7 +41,7 @@ struct patch_face {
     double centre[3], area, size; /* [m] mean of the corners; [m2]; [m] the largest distance of a corner from it */
     double ours;                  /* [m2] area of our triangles at this face */
     double film, behind;          /* [W/(m2 K)] the last one, 0: there was none yet; [K] */
-    double fourth;                /* [K4] mean T^4 of our triangles; 0: not known yet */
+    double found;                 /* [K] mean over our triangles; 0: not known yet */
 };
 
 struct openfoam {
@@ -343,29 +344,29 @@ static int read_rows(struct openfoam *foam) {
     return status;
 }
 
-/* Finds the temperatures of faces: means of T^4 over their triangles. */
+/* Finds the temperatures of faces: means over the areas of triangles. Heat through a film is linear in T, so both sides
+ * count the same heat. */
 static void take_temperatures(const struct exchange *exchange) {
     struct openfoam *foam = exchange->state;
     const struct exchange_faces *faces = &exchange->faces;
-    for (int k = 0; k < foam->n; ++k) foam->face[k].fourth = 0;
+    for (int k = 0; k < foam->n; ++k) foam->face[k].found = 0;
     for (uint32_t t = 0; t < faces->n; ++t) {
         struct patch_face *face = &foam->face[foam->at[t]];
-        face->fourth += faces->area[t] / face->ours * pow(faces->found[t], 4);
+        face->found += faces->area[t] / face->ours * faces->found[t];
     }
 }
 
 /* Writes T.in, and then the lock. After an error in `begin` faces have no temperature yet and are insulated. */
-static int write_rows(const struct openfoam *foam, const char *lock) {
-    struct output file;
-    int status = output_open(&file, path_of(foam->group, "T.in"));
+static int write_rows(const struct openfoam *foam, const char *text) {
+    struct output rows, lock;
+    int status = output_open(&rows, path_of(foam->group, "T.in"));
     if (status) return status;
-    for (int k = 0; k < foam->n; ++k)
-        fprintf(file.file, "%.17g 0 %d\n", sqrt(sqrt(foam->face[k].fourth)), foam->face[k].fourth > 0);
-    status = output_close(&file, STATUS_OK);
-    if (!status) status = output_open(&file, path_of(foam->folder, "OpenFOAM.lock"));
+    for (int k = 0; k < foam->n; ++k) fprintf(rows.file, "%.17g 0 %d\n", foam->face[k].found, foam->face[k].found > 0);
+    status = output_close(&rows, STATUS_OK);
+    if (!status) status = output_open(&lock, path_of(foam->folder, "OpenFOAM.lock"));
     if (status) return status;
-    fputs(lock, file.file);
-    return output_close(&file, STATUS_OK);
+    fputs(text, lock.file);
+    return output_close(&lock, STATUS_OK);
 }
 
 /* ---- the partner ------------------------------------------------------------------------------------------------- */
@@ -420,14 +421,15 @@ static int openfoam_give(struct exchange *exchange, bool *again) {
     return write_rows(exchange->state, GO_ON);
 }
 
-/* Asks OpenFOAM to end if it has not. After an error it writes no results. */
+/* Asks OpenFOAM to end if it has not. After an error it may have ended by itself. */
 static int openfoam_end(struct exchange *exchange, int status) {
     struct openfoam *foam = exchange->state;
     if (!foam) return status;
     enum turn turn = THEIRS;
     int ending = foam->silent || !*foam->group;
+    if (status) exchange->timeout = fmin(exchange->timeout, TIMEOUT_OF_END);
     while (!ending && !(ending = wait_for_turn(exchange, &turn)) && turn != NOBODYS)
-        ending = write_rows(foam, status ? "action=noWriteNow\n" : "action=writeNow\n");
+        ending = write_rows(foam, "action=writeNow\n");
     free(foam->face);
     free(foam->at);
     free(foam);
