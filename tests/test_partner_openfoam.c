@@ -234,14 +234,15 @@ TEST(watts_are_kept) {
 TEST(bad_input) {
     static const struct {
         const char *fault, *reason;
-    } cases[] = {{"few", "T.out:6: the file ends before its last face"},
-                 {"many", "T.out:8: patchFaces has 6 faces only"},
-                 {"zero", "T.out:7: wall and fluid have 0 K"},
-                 {"nan", "T.out:7: wall and fluid have nan K"},
-                 {"old", "T.out:7: the face has 0.02 m2, and 0.01 m2 in patchFaces"},
-                 {"units", "two units of length, one 0.001 of the other"},
-                 {"elsewhere", "12 of 12 triangles of the bed are at no face, the first at ("},
-                 {"bare", "1 of 7 faces are at no triangle of the bed, the first at (0.0"}};
+    } cases[] = {
+        {"few", "T.out:6: the file ends before its last face"},
+        {"many", "T.out:8: patchFaces has 6 faces only"},
+        {"zero", "T.out:7: wall and fluid have 0 K"},
+        {"nan", "T.out:7: wall and fluid have nan K"},
+        {"old", "T.out:7: the face has 0.02 m2, and 0.01 m2 in patchFaces"},
+        {"units", "the faces have 60000 m2, and the triangles of the bed 0.06 m2: these are two units of length"},
+        {"elsewhere", "12 of 12 triangles of the bed are at no face, the first at ("},
+        {"bare", "1 of 7 faces are at no triangle of the bed, the first at (0.0"}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
         int asked;
         fault = cases[k].fault;
