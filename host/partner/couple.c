@@ -292,6 +292,7 @@ int couple_run(struct heat *h, const struct partner *partner, struct exchange *e
     if (!status) status = make_sides(&c);
     if (!status) status = partner->begin(e);
     if (!status) status = run_windows(&c, partner, ended);
+    if (c.tries > 0) keep_state(&c, true); /* the partner has failed within a window */
     if (!status && c.windows > 0 && c.written < c.run.now) status = write_now(&c);
     if (!status && c.windows > 0) status = time_report(&c.run);
     progress_stop(&h->options.progress);
