@@ -171,8 +171,8 @@ void fibrad_heat_correct_sides(fibrad_heat *heat, double change) {
 }
 
 bool fibrad_heat_finish_sides(fibrad_heat *heat) {
-    const bool guessed = heat->sources.guessed;
     const double last = heat->sources.changed, tolerance = heat->sources.tolerance;
+    const bool passed = heat->sources.passed;
     double changed = 0;
     for (uint32_t m = 0; m < heat->meshes; m++) {
         if (!heat->sources.has_sides[m]) continue;
@@ -188,12 +188,16 @@ bool fibrad_heat_finish_sides(fibrad_heat *heat) {
             const double emission = still[a] + answer[a] * (sent + flow_to(a, end, heat->solution.net, area));
             const double lag = emission - (heat->sources.emission[b] + excess[a]), by = answer[a] * more;
             changed += area * (eps * FIBRAD_HEAT_EXTRAPOLATION * FIBRAD_HEAT_EXTRAPOLATION * lag * lag + by * by / eps);
-            for (uint32_t k = a; k < end; k++) heat->solution.detail[k] -= eps * lag, excess[k] = emission - mean;
+            for (uint32_t k = a; k < end; k++) {
+                if (passed) heat->solution.detail[k] -= eps * lag;
+                excess[k] = emission - mean;
+            }
         }
         heat->sources.beyond[m] += more;
         heat->sources.emission[b] = mean, heat->sources.temperature[b] = fibrad_heat_temperature(heat, mean);
     }
-    heat->sources.guessed = false, heat->sources.changed = guessed ? __builtin_inf() : changed;
-    return guessed || (changed > fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) &&
+    if (passed) heat->sources.changed = changed;
+    heat->sources.passed = true;
+    return !passed || (changed > fibrad_max(tolerance * tolerance * heat->solution.scale, heat->solution.smallest) &&
                        changed < last / 4);
 }

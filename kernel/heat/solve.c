@@ -463,9 +463,12 @@ static void guess_joined(fibrad_heat *heat) {
     }
 }
 
-/* Has the first sweep of a search form the net flows. */
+/* Has the first sweep of a search form the net flows. A search for temperatures of sides begins on the finer level. */
 static void send_first(fibrad_heat *heat) {
     guess_joined(heat);
+    if (heat->sources.sides) heat->solution.group = 1;
+    for (uint32_t a = 0; a < heat->patches && heat->sources.sides; a++)
+        heat->solution.radiosity[a] += heat->solution.detail[a];
     send_radiosities(heat);
 }
 
@@ -585,9 +588,12 @@ static void finish_contacts(fibrad_heat *heat) {
     fibrad_contact_gains(&own, c->temperature, c->gain);
 }
 
-/* Goes back from the finer level to the coarser one. */
+/* Goes back from the finer level to the coarser one. `detail` keeps the radiosities of the finer level. */
 static void return_to_fours(fibrad_heat *heat) {
-    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= heat->solution.detail[a];
+    for (uint32_t a = 0; a < heat->patches; a++) {
+        const double coarse = -heat->solution.detail[a];
+        heat->solution.detail[a] = heat->solution.radiosity[a], heat->solution.radiosity[a] = coarse;
+    }
     heat->solution.group = FIBRAD_HEAT_FOUR;
     send_radiosities(heat);
 }
@@ -615,12 +621,12 @@ static void finish_powers(fibrad_heat *heat) {
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
     if (heat->contacts.joins) finish_contacts(heat);
-    const bool again = fibrad_heat_finish_sides(heat);
-    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
-    if (again)
+    if (fibrad_heat_finish_sides(heat)) {
         return_to_fours(heat);
-    else
-        send_means(heat);
+        return;
+    }
+    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
+    send_means(heat);
 }
 
 /* The residual of all patches is mostly that of the spheres. What single walls gain may be much less right, above all
@@ -805,22 +811,46 @@ static void turn_direction(fibrad_heat *heat, double keep) {
         heat->contacts.direction[b] = heat->contacts.warming[b] + (keep != 0 ? keep * heat->contacts.direction[b] : 0);
 }
 
-/* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
- * finish_powers, `detail` has minus the radiosities of the coarser level. */
+/* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. If the
+ * finer level was searched before, it goes on there. Until finish_powers, `detail` has minus the radiosities of the
+ * coarser level. */
 static void refine_patches(fibrad_heat *heat) {
-    if (!heat->sources.guessed) fibrad_heat_correct_sides(heat, 1);
+    fibrad_heat_correct_sides(heat, 1);
     find_powers(heat, heat->solution.coarse);
-    if (!heat->sources.guessed) fibrad_heat_correct_sides(heat, -1);
+    fibrad_heat_correct_sides(heat, -1);
     find_emissions(heat);
     if (heat->sources.free_level) fix_level(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
     heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
         const double coarse = heat->solution.radiosity[a];
-        heat->solution.radiosity[a] += heat->solution.detail[a];
+        heat->solution.radiosity[a] = heat->solution.detail[a] + (heat->sources.sides ? 0 : coarse);
         heat->solution.detail[a] = -coarse;
     }
     send_radiosities(heat);
+}
+
+/* Goes to the coarser level for the first time, with the emissions of sides that the finer level has found. It begins
+ * with the means of fours, less the detail of an earlier solution. Until its end, the powers of both levels are taken
+ * to be equal. */
+static void find_fours_of_sides(fibrad_heat *heat) {
+    find_powers(heat, heat->solution.power);
+    fibrad_copy(heat->solution.coarse, heat->solution.power, heat->bodies * sizeof *heat->solution.coarse);
+    fibrad_heat_finish_sides(heat);
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double eps = heat->sources.emissivity[b], *excess = fibrad_heat_excess(heat, b);
+        for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
+            double sum = 0;
+            next = end_of_group(a, heat->first[b + 1], FIBRAD_HEAT_FOUR);
+            for (uint32_t k = a; k < next; k++)
+                sum += heat->solution.radiosity[k] - heat->solution.detail[k] -
+                       (excess != NULL ? eps * excess[k - heat->first[b]] : 0);
+            const double mean = excess != NULL && eps == 1 ? heat->sources.emission[b] : sum / (next - a);
+            for (uint32_t k = a; k < next; k++)
+                heat->solution.detail[k] = -mean - (excess != NULL ? eps * excess[k - heat->first[b]] : 0);
+        }
+    }
+    return_to_fours(heat);
 }
 
 /* Goes to the finer level, or to the end. */
@@ -828,6 +858,8 @@ static void leave_level(fibrad_heat *heat) {
     note_unsettled(heat);
     if (heat->solution.group == FIBRAD_HEAT_FOUR)
         refine_patches(heat);
+    else if (heat->sources.sides && !heat->sources.passed)
+        find_fours_of_sides(heat);
     else
         finish_powers(heat);
 }
@@ -973,7 +1005,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
         const bool replaced = replaces_given(heat, coarse);
-        if (!replaced && !(coarse && rough && !heat->sources.guessed)) {
+        if (!replaced && !(coarse && rough)) {
             leave_level(heat);
             return;
         }
@@ -1011,7 +1043,7 @@ static int end_sweep(fibrad_heat *heat) {
                 heat->solution.net[a] = sum[a] + light_on(heat, b, a);
         if (heat->solution.group == 1 && heat->sources.sides) {
             fibrad_heat_find_sides(heat);
-            if (heat->sources.guessed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
+            if (!heat->sources.passed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
         }
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);

@@ -473,10 +473,10 @@ static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     const bool had = heat->solution.warm && heat->sources.has_sides[m], has = set_sides(heat, s, m, own);
     heat->sources.has_excess[m] = has || (s->side_temperature != NULL && is_given(own) && source.emissivity > 0);
     heat->sources.has_sides[m] = has, heat->sources.sides = heat->sources.sides || has;
-    heat->sources.guessed = heat->sources.guessed || (has && !had);
     if (!had) heat->sources.beyond[m] = 0;
     if (heat->sources.has_excess[m]) {
-        source.temperature = mean_temperature(heat, s, m, own);
+        source.temperature = had && is_given(heat->sources.temperature[b]) ? heat->sources.temperature[b]
+                                                                           : mean_temperature(heat, s, m, own);
         find_excess(heat, s, m, own, source.temperature, had);
     }
     set_body(heat, s, middle, b, &source);
@@ -611,7 +611,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     }
     heat->sources.side_temperature = sources->side_temperature, heat->sources.side_film = sources->side_film;
     heat->sources.side_gas = sources->side_gas, heat->sources.side_power = sources->side_power;
-    heat->sources.sides = heat->sources.guessed = false, heat->sources.changed = __builtin_inf();
+    heat->sources.sides = heat->sources.passed = false, heat->sources.changed = __builtin_inf();
     set_walls(heat, sources, middle);
     unknown = heat->sources.sides;
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
@@ -628,7 +628,6 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     fibrad_zero(heat->solution.span, heat->spheres * sizeof *heat->solution.span);
     set_conduction(heat, sources);
     begin_spots(heat, sources);
-    if (heat->sources.guessed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
     heat->contacts.sigma = sources->sigma, heat->contacts.zero = sources->surroundings;
     heat->solution.sweeps = 0;
     heat->contacts.afresh = !heat->solution.warm;

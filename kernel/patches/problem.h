@@ -162,7 +162,7 @@ typedef struct fibrad_heat_given {
     /* of sides.c */
     bool has_sides[FIBRAD_WALLS_MAX]; /* [meshes], whether temperatures of sides are to be found */
     bool sides;                       /* some mesh has */
-    bool guessed;                     /* the coarser level has first guesses of these */
+    bool passed;                          /* the finer level has been searched */
     const double *side_temperature, *side_film, *side_gas, *side_power; /* the caller's */
     double of_others[FIBRAD_WALLS_MAX]; /* K, [meshes], of sides that have no temperature of their own */
     double beyond[FIBRAD_WALLS_MAX];    /* [meshes], what sides gain per area besides the flows of their patches */
