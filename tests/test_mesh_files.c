@@ -411,6 +411,22 @@ TEST(backs_of_meshes) {
         text, "warning: the mesh is not closed: 4 edges belong to one triangle, 0 to more than two; components: 1");
 }
 
+/* Rays of a plane start outside of the tube that stands on it, too. With a disc in place of the plane nothing is seen
+ * from outside. */
+TEST(a_plane_below_a_tube) {
+    struct soup soup = {0};
+    const char *bed = write_file("bed.csv", BED);
+    soup_cone(&soup, 0, 0, (const double[]){-3, 3}, (const double[]){4, 4}, 24);
+    const char *tube = wall_of("mesh:", write_solid("tube.stl", &soup), ":temperature=900");
+    FAIL_WITH(3, "heat", bed, "--emissivity", "0.8", "--temperature", "T", "--ambient", "300", "--wall", tube, "--wall",
+              "zmin:at=-3:temperature=500");
+    assert_has(said, "the back of wall tube is seen, at line ");
+    assert_has(said, "; rays of a plane start outside of a tube, too: its floor and lid must be meshes\n");
+    soup_cone(&soup, 0, 0, (const double[]){-3, -3}, (const double[]){0, 4}, 24);
+    tube = wall_of("mesh:", write_solid("tube.stl", &soup), ":temperature=900");
+    SUCCEED("heat", bed, "--emissivity", "0.8", "--temperature", "T", "--ambient", "300", "--wall", tube);
+}
+
 /* ---- heat of triangles ------------------------------------------------------------------------------------------ */
 
 /* Writes a file with a line of numbers for each triangle. */

@@ -238,9 +238,13 @@ fibrad_run bed_options_run(struct bed_options *options) {
 
 int bed_options_status(struct bed_options *options, const struct bed *bed, int status, const fibrad_fault *fault) {
     progress_stop(&options->progress);
-    if (status && options->walls.walls.meshes && fault->triangle != UINT32_MAX)
-        return meshes_refuse(options->walls.walls.meshes, status, fault->triangle);
-    if (status == FIBRAD_E_ENDLESS) return walls_refuse_endless(&options->walls.walls, bed);
+    const struct walls *walls = &options->walls.walls;
+    if (status && walls->meshes && fault->triangle != UINT32_MAX) {
+        bool planes = false;
+        for (uint32_t w = 0; w < walls->count; ++w) planes |= walls->wall[w].kind == FIBRAD_WALL_PLANE;
+        return meshes_refuse(walls->meshes, status, fault->triangle, planes);
+    }
+    if (status == FIBRAD_E_ENDLESS) return walls_refuse_endless(walls, bed);
     if (status == FIBRAD_E_MEMORY && options->scratch)
         return message_at(STATUS_MEMORY, options->scratch, 0, "there is no more room on this disk, or in memory");
     return bed_status(bed, options->name, status, fault);

@@ -152,7 +152,7 @@ const struct mesh *mesh_of_wall(const struct meshes *meshes, uint32_t wall) {
     return NULL;
 }
 
-int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle) {
+int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle, bool planes) {
     const struct mesh *mesh = mesh_of_triangle(meshes, triangle);
     char where[STL_PLACE];
     if (!mesh) return message(STATUS_INPUT, "triangle %u: %s", triangle, fibrad_status_text(status));
@@ -162,8 +162,9 @@ int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle) {
     if (status != FIBRAD_E_BACK)
         return message_at(STATUS_INPUT, mesh->file, 0, "%s, wall %s: %s", where, name, fibrad_status_text(status));
     return message_at(STATUS_INPUT, mesh->file, mesh->text ? place : 0,
-                      "the back of wall %s is seen, at %s; mesh:%s:both makes both sides the wall", name, where,
-                      mesh->file);
+                      "the back of wall %s is seen, at %s; mesh:%s:both makes both sides the wall%s", name, where,
+                      mesh->file,
+                      planes ? "; rays of a plane start outside of a tube, too: its floor and lid must be meshes" : "");
 }
 
 void meshes_free(struct meshes *meshes) {

@@ -109,8 +109,8 @@ uint32_t mesh_triangles(const struct mesh *mesh, uint32_t wall);
 /* The least and largest coordinates of a wall. */
 void mesh_extents(const struct meshes *meshes, uint32_t wall, double low[3], double high[3]);
 
-/* Prints why the library refuses a triangle. Returns STATUS_INPUT. */
-int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle);
+/* Prints why the library refuses a triangle, of a bed that also has planes or not. Returns STATUS_INPUT. */
+int meshes_refuse(const struct meshes *meshes, int status, uint32_t triangle, bool planes);
 
 void meshes_free(struct meshes *meshes);
 

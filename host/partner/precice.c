@@ -199,10 +199,19 @@ static sigjmp_buf stopped;
 
 static void leave_call(int signal) { siglongjmp(stopped, signal); }
 
+/* Has standard output go where standard error goes, or back. Returns where it went. */
+static int redirect_output(int to) {
+    fflush(stdout);
+    const int before = dup(STDOUT_FILENO);
+    dup2(to, STDOUT_FILENO);
+    return before;
+}
+
 /* Calls a function of this file that calls preCICE. preCICE prints its own error, and aborts: then this says who ended.
- * A partner that says nothing in exchange->timeout ends the run, too. */
+ * A partner that says nothing in exchange->timeout ends the run, too. The log of preCICE goes to standard error. */
 static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     struct sigaction leave = {.sa_handler = leave_call}, before[2];
+    const int output = redirect_output(STDERR_FILENO);
     sigemptyset(&leave.sa_mask);
     sigaction(SIGABRT, &leave, &before[0]);
     sigaction(SIGALRM, &leave, &before[1]);
@@ -215,6 +224,8 @@ static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     alarm(0);
     sigaction(SIGABRT, &before[0], NULL);
     sigaction(SIGALRM, &before[1], NULL);
+    close(redirect_output(output));
+    close(output);
     if (interrupt_status()) return interrupt_status();
     if (signal == SIGABRT) status = message(STATUS_FILE, "preCICE has ended with an error, which it has printed");
     if (signal == SIGALRM) status = message(STATUS_FILE, "no word from preCICE in %g s (--timeout)", e->timeout);

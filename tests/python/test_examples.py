@@ -137,6 +137,7 @@ def test_yade_runner_with_a_stand_in(small, examples):
     radiate()
     assert set(state["temperature"].values()) == {300.0} and state["bed"].n == small.n
     assert set(state["temperature"]) == {2, *(b.id for b in spheres[2:])}
+    assert not state["given"]
     first, scene.time = state["bed"], 1e-6
     radiate()
     stored = sum(scene.bodies[i].state.mass * 800 * (t - 300) for i, t in state["temperature"].items())
@@ -144,14 +145,48 @@ def test_yade_runner_with_a_stand_in(small, examples):
     del scene.bodies[spheres[-1].id]
     radiate()
     assert state["bed"].n == small.n - 1
+    for b in spheres[:-1]:  # with a ThermalEngine; the clump has 900 K
+        b.state.temp, b.state.stepFlux = 900.0 if b.clumpId == 2 else 300.0, 0.0
+    kept, state["absorbed"], scene.dt = dict(state["temperature"]), 0.0, 1e-3
+    radiate()
+    names["hand_over"]()
+    flux = np.array([b.state.stepFlux for b in spheres[:-1]])
+    powers = state["bed"].solve([b.state.temp for b in spheres[:-1]], 0.8, surroundings=300.0)
+    assert flux[:2].sum() == pytest.approx(powers.spheres[:2].sum()) and flux[0] == pytest.approx(
+        flux[1] * (small.r[0] / small.r[1]) ** 3) and flux[0] < 0
+    assert flux[2:] == pytest.approx(powers.spheres[2:], rel=1e-6, abs=1e-9 * abs(flux[0]))
+    assert state["absorbed"] == pytest.approx(1e-3 * flux.sum()) and state["temperature"] == kept
 
 
-def test_yade_runner(examples, tmp_path):
+def yade(script, folder):
     if not shutil.which("yade"):
         pytest.skip("no YADE (Debian: yade); its stand-in is tested")
     places = os.path.dirname(os.path.dirname(fibrad.__file__))
-    run = subprocess.run(["yade", "-n", "-x", examples / "yade_radiation.py"], cwd=tmp_path, check=False, text=True,
-                         env={**os.environ, "PYTHONPATH": places}, capture_output=True)
+    return subprocess.run(["yade", "-n", "-x", script], cwd=folder, check=False, text=True,
+                          env={**os.environ, "PYTHONPATH": places}, capture_output=True)
+
+
+def test_yade_thermal_engine(tree, examples, tmp_path):
+    """The pair of docs/beside.md: the heat that its spheres lose is what was handed over, and they conduct to each other."""
+    page = (tree / "docs" / "beside.md").read_text(encoding="utf-8")
+    script, says = re.search(r"^File `pair.py`:\n```python\n(.*?)^```\n.*?^```text\n\.\.\.\n(.*?)\n```", page,
+                             re.MULTILINE | re.DOTALL).groups()
+    shutil.copy(examples / "yade_radiation.py", tmp_path)
+    (tmp_path / "pair.py").write_text(script + """
+heat = sum(b.state.mass * 710 * (b.state.temp - start) for b, start in ((hot, 1000), (cold, 800)))
+print("stored", heat, "absorbed", radiate.__globals__["absorbed"])
+""", encoding="utf-8")
+    run = yade("pair.py", tmp_path)
+    found = re.search(r"stored (\S+) absorbed (\S+)", run.stdout)
+    assert found and says in run.stdout.splitlines(), run.stdout + run.stderr
+    stored, absorbed = map(float, found.groups())
+    assert absorbed < -0.05 and stored == pytest.approx(absorbed, rel=1e-9)
+    hot, cold = map(float, re.findall(r"\S+(?= K)", says))
+    assert hot < 1000 and cold > 800
+
+
+def test_yade_runner(examples, tmp_path):
+    run = yade(examples / "yade_radiation.py", tmp_path)
     found = re.search(r"52 spheres and clumps, (\S+) to (\S+) K, absorbed (\S+) J, stored (\S+) J", run.stdout)
     assert found, run.stdout + run.stderr
     coldest, hottest, absorbed, stored = map(float, found.groups())

@@ -1,7 +1,10 @@
 # yade_radiation.py - spheres and clumps of YADE above a hot floor are heated by radiation. SPDX-License-Identifier: MIT
 """Run `yade -n -x yade_radiation.py`. YADE's Python must find fibrad. PyRunner calls radiate() at regular steps.
 Positions, walls, facets and clumps are those of O.bodies. Net powers change the temperatures, which this file keeps by
-the ids of the bodies. All members of a clump have the temperature of their clump."""
+the ids of the bodies. All members of a clump have the temperature of their clump.
+
+With a ThermalEngine temperatures are those of its states. Call radiate() after it, and hand_over() before it in each step:
+the engine takes stepFlux [W], above 0 where heat is gained, and then sets it to 0."""
 import numpy as np
 
 import fibrad
@@ -11,16 +14,18 @@ CAPACITY, EMISSIVITY = 800.0, 0.8  # J/(kg K)
 EVERY = 2000  # time steps
 
 temperature = {}  # K, by the ids of the spheres and clumps
+given = []  # states of ThermalEngine, and the power of each [W]
 bed = None  # made by the first call, moved by the next ones
 last_time = 0.0
 absorbed = 0.0  # J
 
 
 def spheres_of(bodies):
-    """The spheres among the bodies: ids of what each belongs to (its clump, or itself), positions, radii."""
+    """The spheres among the bodies: ids of what each belongs to (its clump, or itself), positions, radii, states."""
     found = [b for b in bodies if isinstance(b.shape, Sphere)]
     return (np.array([b.clumpId if b.isClumpMember else b.id for b in found]),
-            np.array([b.state.pos for b in found], float).reshape(-1, 3), np.array([b.shape.radius for b in found]))
+            np.array([b.state.pos for b in found], float).reshape(-1, 3), np.array([b.shape.radius for b in found]),
+            [b.state for b in found])
 
 
 def walls_of(bodies, x):
@@ -39,9 +44,16 @@ def walls_of(bodies, x):
     return walls
 
 
+def hand_over():
+    global absorbed
+    for state, watts in given:
+        state.stepFlux = watts
+        absorbed += watts * O.dt
+
+
 def radiate():
-    global bed, last_time, absorbed
-    owner, x, r = spheres_of(O.bodies)
+    global bed, last_time, absorbed, given
+    owner, x, r, states = spheres_of(O.bodies)
     owners, index = np.unique(owner, return_inverse=True)
     clump = np.where([O.bodies[int(i)].isClump for i in owner], owner + 1, 0)  # 0: the sphere is alone
     box = O.cell.size if O.periodic else None
@@ -49,9 +61,17 @@ def radiate():
         bed = fibrad.Bed(x, r, box=box, walls=walls_of(O.bodies, x), clump=clump)
     else:
         bed.move(x, r, box=box, walls=walls_of(O.bodies, x))
-    now = np.array([temperature.setdefault(int(i), START) for i in owners])
+    thermal = all(hasattr(state, "stepFlux") for state in states)
+    part = r**3 / np.bincount(index, r**3)[index]  # of a member in the heat of its clump
+    if thermal:
+        now = np.bincount(index, part * [state.temp for state in states])
+    else:
+        now = np.array([temperature.setdefault(int(i), START) for i in owners])
     powers = bed.solve(now[index], EMISSIVITY, surroundings=SURROUNDINGS)
     gained = np.bincount(index, powers.spheres)
+    if thermal:
+        given = list(zip(states, (part * gained[index]).tolist()))
+        return
     passed, last_time = O.time - last_time, O.time
     now += gained * passed / (np.array([O.bodies[int(i)].state.mass for i in owners]) * CAPACITY)
     absorbed += gained.sum() * passed
