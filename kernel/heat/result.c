@@ -76,24 +76,11 @@ static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_errors 
     }
 }
 
-/* The temperature of an emission of sides, which may be below 0 by rounding. NaN: it is far below. */
-#define ROUNDED 1e-12
-static double side_kelvin(const fibrad_heat *heat, double emission) {
-    const double t0 = heat->sources.surroundings, black = heat->sources.sigma * (t0 * t0) * (t0 * t0);
-    const double t = fibrad_heat_temperature(heat, emission), zero = black + fibrad_abs(emission - black);
-    return t >= 0 || emission + black < -ROUNDED * zero ? t : 0;
-}
-
 /* Whether all temperatures that were to be found exist. */
 static bool all_found(const fibrad_heat *heat) {
-    bool found = true;
+    bool found = !(heat->sources.sides && heat->sources.below);
     for (uint32_t b = 0; b < heat->bodies; b++)
         found = found && (!fibrad_heat_is_free(heat, b) || heat->sources.temperature[b] >= 0);
-    for (uint32_t m = 0; m < heat->meshes; m++) {
-        const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
-        for (uint32_t a = 0; a < heat->of_mesh[m] && heat->sources.has_sides[m]; a++)
-            found = found && side_kelvin(heat, heat->sources.emission[b] + fibrad_heat_excess(heat, b)[a]) >= 0;
-    }
     return found;
 }
 
@@ -281,7 +268,8 @@ static double temperature_of_side(const fibrad_heat *heat, uint32_t b, const fib
     const double *excess = fibrad_heat_excess(heat, b);
     if (excess == NULL) return heat->sources.temperature[b];
     const uint32_t a = fibrad_heat_first_meshed(heat) + cut->patch - heat->first[b];
-    return side_kelvin(heat, heat->sources.emission[b] + excess[a]);
+    const double t = fibrad_heat_temperature(heat, heat->sources.emission[b] + excess[a]);
+    return t >= 0 || (heat->sources.sides && heat->sources.below) ? t : 0;
 }
 
 int fibrad_heat_read_sides(const fibrad_heat *heat, double *flux, double *temperature) {

@@ -170,9 +170,19 @@ void fibrad_heat_add_offsets(const fibrad_heat *heat, double *to);
 /* ---- sides.c: sides of triangles that have films or powers --------------------------------------------------------
  */
 
-/* Whether the temperature of a side, by the caller's number, is to be found: it has a film or a power. */
-static inline bool fibrad_heat_side_is_found(const double *film, const double *power, uint64_t side) {
-    return (film != NULL && film[side] != 0) || (power != NULL && power[side] == power[side]);
+/* What sources give for a side. Where they give nothing, `film` and `power` are 0, temperatures NaN. */
+typedef struct fibrad_heat_side {
+    double temperature, film, gas, power;
+    bool found; /* the temperature is to be found */
+} fibrad_heat_side;
+static inline fibrad_heat_side fibrad_heat_side_of(const fibrad_heat *heat, const fibrad_heat_sources *s,
+                                                   uint32_t side) {
+    const uint64_t k = fibrad_side_given(&heat->scene->mesh, side);
+    const double nan = __builtin_nan(""), power = s->side_power != NULL ? s->side_power[k] : nan;
+    const double film = s->side_film != NULL ? s->side_film[k] : 0;
+    return (fibrad_heat_side){s->side_temperature != NULL ? s->side_temperature[k] : nan, film,
+                              s->side_gas != NULL ? s->side_gas[k] : nan, power == power ? power : 0,
+                              film != 0 || power == power};
 }
 
 /* Finds how emissions of sides follow the radiation that arrives. Overwrites heat->solution.source. */
@@ -185,16 +195,6 @@ double fibrad_heat_sides_residual(fibrad_heat *heat, uint32_t body);
 /* The product of x, a matrix and y. emits: the matrix is that of the system without the net flows; else it is the
  * inverse of the preconditioner. */
 double fibrad_heat_sides_product(const fibrad_heat *heat, uint32_t body, const double *x, const double *y, bool emits);
-
-/* Whether the sides of a body hold the level of temperatures: some have a given temperature or a film. */
-bool fibrad_heat_sides_hold(const fibrad_heat *heat, uint32_t body);
-
-/* The sum over the patches of emissivity times area times the square of the emission if all that arrives is `level`,
- * minus `level`. */
-double fibrad_heat_sides_squares(const fibrad_heat *heat, uint32_t body, double level);
-
-/* Adds `change` times what extrapolation takes of the powers of the coarser level to what sides gain. */
-void fibrad_heat_correct_sides(fibrad_heat *heat, double change);
 
 /* Takes over the emissions of sides at the end of the finer level. Returns whether both levels must be searched again.
  * Overwrites heat->solution.source. */

@@ -349,8 +349,6 @@ static void find_scale(fibrad_heat *heat) {
         if (body.area > 0) {
             const double residual = mean_residual_at(heat, b, &body, mean);
             heat->solution.scale += body.area * residual * residual / stiffness(heat, b, &body);
-        } else if (fibrad_heat_finds_sides(heat, b)) {
-            heat->solution.scale += fibrad_heat_sides_squares(heat, b, mean);
         } else if (!fibrad_heat_is_joined(heat, b)) {
             heat->solution.scale += emitting(heat, b) * difference * difference + excess_squares(heat, b);
         }
@@ -371,12 +369,12 @@ static void heat_by_light(fibrad_heat *heat) {
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false, sides = false;
+    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false, absolute = heat->contacts.joins;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const bool finds = fibrad_heat_finds_sides(heat, b);
-        held = held || (finds ? fibrad_heat_sides_hold(heat, b) : emitting(heat, b) > 0);
-        sides = sides || finds;
-        radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
+        const bool sides = fibrad_heat_finds_sides(heat, b);
+        held = held || (sides ? heat->sources.held : emitting(heat, b) > 0);
+        absolute = absolute || sides;
+        radiates = radiates || sides || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.storage[b] == 0)
             sum += heat->sources.given_power[b], sizes += fibrad_abs(heat->sources.given_power[b]);
         double light = 0;
@@ -384,7 +382,7 @@ static bool solvable(fibrad_heat *heat) {
         sum += light, sizes += light;
     }
     heat->sources.free_level = !held;
-    if (heat->contacts.joins || sides) return held || !(radiates || sides);
+    if (absolute) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -463,9 +461,12 @@ static void guess_joined(fibrad_heat *heat) {
     }
 }
 
-/* Has the first sweep of a search form the net flows. */
+/* Has the first sweep of a search form the net flows. A search for temperatures of sides begins on the finer level. */
 static void send_first(fibrad_heat *heat) {
     guess_joined(heat);
+    if (heat->sources.sides) heat->solution.group = 1;
+    for (uint32_t a = 0; a < heat->patches && heat->sources.sides; a++)
+        heat->solution.radiosity[a] += heat->solution.detail[a];
     send_radiosities(heat);
 }
 
@@ -585,9 +586,23 @@ static void finish_contacts(fibrad_heat *heat) {
     fibrad_contact_gains(&own, c->temperature, c->gain);
 }
 
-/* Goes back from the finer level to the coarser one. */
-static void return_to_fours(fibrad_heat *heat) {
-    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.radiosity[a] -= heat->solution.detail[a];
+/* Goes from the finer level to the coarser one, which begins with the means of fours, less the detail of an earlier
+ * solution. `detail` keeps the radiosities of the finer level. */
+static void coarsen_patches(fibrad_heat *heat) {
+    double *fine = heat->solution.radiosity, *detail = heat->solution.detail, *own = heat->solution.source;
+    for (uint32_t b = 0; b < heat->bodies; b++) {
+        const double eps = heat->sources.emissivity[b], *excess = fibrad_heat_excess(heat, b);
+        for (uint32_t a = heat->first[b], next; a < heat->first[b + 1]; a = next) {
+            double sum = 0;
+            next = end_of_group(a, heat->first[b + 1], FIBRAD_HEAT_FOUR);
+            for (uint32_t k = a; k < next; k++) {
+                own[k] = excess != NULL ? eps * excess[k - heat->first[b]] : 0;
+                sum += fine[k] - detail[k] - own[k], detail[k] = fine[k];
+            }
+            const double mean = excess != NULL && eps == 1 ? heat->sources.emission[b] : sum / (next - a);
+            for (uint32_t k = a; k < next; k++) fine[k] = mean + own[k];
+        }
+    }
     heat->solution.group = FIBRAD_HEAT_FOUR;
     send_radiosities(heat);
 }
@@ -614,13 +629,14 @@ static void finish_powers(fibrad_heat *heat) {
         if (fibrad_heat_is_free(heat, b))
             heat->sources.temperature[b] = fibrad_heat_temperature(heat, extrapolated_emission(heat, b));
     }
-    if (heat->contacts.joins) finish_contacts(heat);
-    const bool again = fibrad_heat_finish_sides(heat);
-    for (uint32_t a = 0; a < heat->patches; a++) heat->solution.detail[a] += heat->solution.radiosity[a];
-    if (again)
-        return_to_fours(heat);
-    else
-        send_means(heat);
+    if (heat->contacts.joins && (heat->sources.passed || !heat->sources.sides)) finish_contacts(heat);
+    if (fibrad_heat_finish_sides(heat)) {
+        coarsen_patches(heat);
+        return;
+    }
+    for (uint32_t a = 0; a < heat->patches && !heat->sources.sides; a++)
+        heat->solution.detail[a] += heat->solution.radiosity[a];
+    send_means(heat);
 }
 
 /* The residual of all patches is mostly that of the spheres. What single walls gain may be much less right, above all
@@ -806,19 +822,18 @@ static void turn_direction(fibrad_heat *heat, double keep) {
 }
 
 /* Goes from the coarser level to the finer one. The detail of an earlier solution is added to the radiosities. Until
- * finish_powers, `detail` has minus the radiosities of the coarser level. */
+ * finish_powers, `detail` has minus the radiosities of the coarser level. With sides whose temperatures are found it
+ * has the detail, and the finer level goes on where it was. */
 static void refine_patches(fibrad_heat *heat) {
-    if (!heat->sources.guessed) fibrad_heat_correct_sides(heat, 1);
     find_powers(heat, heat->solution.coarse);
-    if (!heat->sources.guessed) fibrad_heat_correct_sides(heat, -1);
     find_emissions(heat);
     if (heat->sources.free_level) fix_level(heat);
     fibrad_copy(heat->solution.coarse_emission, heat->sources.emission, heat->bodies * sizeof *heat->sources.emission);
     heat->solution.group = 1;
     for (uint32_t a = 0; a < heat->patches; a++) {
         const double coarse = heat->solution.radiosity[a];
-        heat->solution.radiosity[a] += heat->solution.detail[a];
-        heat->solution.detail[a] = -coarse;
+        heat->solution.radiosity[a] = heat->solution.detail[a] + (heat->sources.sides ? 0 : coarse);
+        heat->solution.detail[a] = heat->sources.sides ? heat->solution.radiosity[a] - coarse : -coarse;
     }
     send_radiosities(heat);
 }
@@ -966,6 +981,8 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     const double last = heat->solution.slope;
     heat->solution.slope = find_residual(heat);
     if (restart) heat->solution.smallest = fibrad_max(heat->solution.smallest, ROUNDING * heat->solution.slope);
+    if (restart && heat->sources.sides && !heat->sources.passed)
+        heat->solution.scale = fibrad_max(heat->solution.scale, heat->solution.slope);
     if (restart) fibrad_zero(heat->solution.drift, heat->bodies * sizeof *heat->solution.drift);
     heat->solution.ratio =
         restart || heat->solution.slope == 0 ? 0 : fibrad_sqrt(fibrad_min(1, heat->solution.slope / last));
@@ -973,7 +990,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
         const bool replaced = replaces_given(heat, coarse);
-        if (!replaced && !(coarse && rough && !heat->sources.guessed)) {
+        if (!replaced && !(coarse && rough)) {
             leave_level(heat);
             return;
         }
@@ -1011,7 +1028,7 @@ static int end_sweep(fibrad_heat *heat) {
                 heat->solution.net[a] = sum[a] + light_on(heat, b, a);
         if (heat->solution.group == 1 && heat->sources.sides) {
             fibrad_heat_find_sides(heat);
-            if (heat->sources.guessed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
+            if (!heat->sources.passed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
         }
         if (!solvable(heat)) return FIBRAD_E_UNSOLVABLE;
         find_scale(heat);

@@ -80,43 +80,25 @@ static int source_why(const radiator *s, bool touches) {
 
 /* The temperature of a side of a mesh. A side without a temperature of its own has that of the mesh. */
 static double side_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t side, double of_body) {
-    const uint64_t k = fibrad_side_given(&heat->scene->mesh, side);
-    return s->side_temperature != NULL && is_given(s->side_temperature[k]) ? s->side_temperature[k] : of_body;
-}
-
-/* Whether the temperature of a side is to be found. */
-static bool is_found(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t side) {
-    return fibrad_heat_side_is_found(s->side_film, s->side_power, fibrad_side_given(&heat->scene->mesh, side));
-}
-
-/* Whether sides of a body may have temperatures of their own, films or powers. */
-static bool may_have_sides(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
-    return heat->slot[b] >= FIBRAD_MESHES &&
-           (s->side_temperature != NULL || s->side_film != NULL || s->side_power != NULL);
-}
-
-/* Whether the film and the power of a side are valid. */
-static bool side_valid(const fibrad_heat_sources *s, uint64_t k) {
-    const double film = s->side_film != NULL ? s->side_film[k] : 0,
-                 power = s->side_power != NULL ? s->side_power[k] : 0;
-    return (film == 0 ||
-            (film > 0 && film <= FIBRAD_CONDUCTANCE_MAX && s->side_gas != NULL && is_temperature(s->side_gas[k]))) &&
-           (!is_given(power) || fibrad_abs(power) <= FIBRAD_POWER_MAX);
+    const double own = fibrad_heat_side_of(heat, s, side).temperature;
+    return is_given(own) ? own : of_body;
 }
 
 /* Whether what is given of the sides of a wall is valid. Only a mesh whose temperature is given may have any of it. */
 static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool valid = true;
-    if (!may_have_sides(heat, s, b)) return true;
+    if (heat->slot[b] < FIBRAD_MESHES) return true;
     const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
     const radiator body = of_body(s, b);
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
-        const double t = side_temperature(heat, s, mesh->side[k], __builtin_nan(""));
-        valid = valid && (!is_given(t) || (is_temperature(t) && is_given(body.temperature)));
-        if (!is_found(heat, s, mesh->side[k])) continue;
-        valid = valid && !is_given(t) && is_given(body.temperature) && body.emissivity > 0 &&
-                side_valid(s, fibrad_side_given(mesh, mesh->side[k]));
+        const fibrad_heat_side side = fibrad_heat_side_of(heat, s, mesh->side[k]);
+        const bool given = is_given(side.temperature);
+        valid =
+            valid && (!given || (is_temperature(side.temperature) && !side.found)) &&
+            (!(given || side.found) || is_given(body.temperature)) && (!side.found || body.emissivity > 0) &&
+            (side.film == 0 || (side.film > 0 && side.film <= FIBRAD_CONDUCTANCE_MAX && is_temperature(side.gas))) &&
+            fibrad_abs(side.power) <= FIBRAD_POWER_MAX;
     }
     return valid;
 }
@@ -224,11 +206,12 @@ static bool touches(const fibrad_heat *heat, uint32_t end) {
 static bool has_one_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool one = s->insulated == NULL || s->insulated[b] == 0;
-    if (!may_have_sides(heat, s, b)) return one;
+    if (heat->slot[b] < FIBRAD_MESHES) return one;
     const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
-    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++)
-        one = one && !is_given(side_temperature(heat, s, mesh->side[k], __builtin_nan(""))) &&
-              !is_found(heat, s, mesh->side[k]);
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
+        const fibrad_heat_side side = fibrad_heat_side_of(heat, s, mesh->side[k]);
+        one = one && !is_given(side.temperature) && !side.found;
+    }
     return one;
 }
 
@@ -342,16 +325,11 @@ static double mean_temperature(const fibrad_heat *heat, const fibrad_heat_source
 }
 
 /* Finds the excess of each patch of a mesh: its emission minus that of the mesh at the temperature `mean`. A patch of
- * several sides has their mean. kept: sides whose temperatures are to be found begin with the last ones. */
-static void find_excess(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean,
-                        bool kept) {
+ * several sides has their mean. */
+static void find_excess(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_body, double mean) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t *first = heat->first + fibrad_heat_body(heat, FIBRAD_MESHES + m);
     double *excess = heat->sources.excess + (first[0] - fibrad_heat_first_meshed(heat)), *area = heat->solution.source;
-    double *last = heat->solution.gathered;
-    const double shift = heat->sources.emission[fibrad_heat_body(heat, FIBRAD_MESHES + m)] - emission_of(s, mean) +
-                         emission_of(s, heat->sources.surroundings);
-    for (uint32_t a = 0; a < first[1] - first[0] && kept; a++) last[a] = excess[a] + shift;
     fibrad_zero(excess, (first[1] - first[0]) * sizeof *excess);
     fibrad_zero(area, (first[1] - first[0]) * sizeof *area);
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
@@ -360,9 +338,7 @@ static void find_excess(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_
         const double own = fibrad_mesh_triangle_area(mesh, fibrad_side_triangle(mesh->side[k]));
         const double more = emission_of(s, side_temperature(heat, s, mesh->side[k], of_body)) - emission_of(s, mean);
         const uint32_t from = fibrad_heat_first_meshed(heat) + cut.patch - first[0];
-        const bool found = kept && is_found(heat, s, mesh->side[k]);
-        for (uint32_t a = from; a < from + (UINT32_C(1) << cut.halvings); a++)
-            excess[a] += own * (found ? last[a] : more), area[a] += own;
+        for (uint32_t a = from; a < from + (UINT32_C(1) << cut.halvings); a++) excess[a] += own * more, area[a] += own;
     }
     for (uint32_t a = 0; a < first[1] - first[0]; a++) excess[a] = area[a] > 0 ? excess[a] / area[a] : 0;
 }
@@ -388,7 +364,7 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     for (uint32_t b = 0; b < heat->given_walls; b++) {
         const radiator source = of_body(s, b);
         widen_range(range, s, &source);
-        if (!may_have_sides(heat, s, b)) continue;
+        if (heat->slot[b] < FIBRAD_MESHES) continue;
         const uint32_t *first = heat->scene->mesh.first + (heat->slot[b] - FIBRAD_MESHES);
         for (uint32_t k = first[0]; k < first[1]; k++) {
             radiator side = source;
@@ -450,34 +426,24 @@ static void shift_radiosities(fibrad_heat *heat, uint32_t b, double times) {
         heat->solution.radiosity[a] += times * heat->sources.emissivity[b] * excess[a - heat->first[b]];
 }
 
-/* Takes over what a mesh has of films and powers of sides, and notes which patches belong together. Returns whether it
- * has any. */
-static bool set_sides(fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t m, double of_others) {
-    const fibrad_mesh *mesh = &heat->scene->mesh;
-    bool any = false;
-    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1] && is_given(of_others); k++)
-        any = any || is_found(heat, s, mesh->side[k]);
-    heat->sources.of_others[m] = of_others;
-    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1] && any; k++) {
-        const fibrad_mesh_cut cut = *fibrad_mesh_cut_of(mesh, heat->cut, mesh->side[k]);
-        if (cut.patch == UINT32_MAX) continue;
-        for (uint32_t a = 0; a < UINT32_C(1) << cut.halvings; a++) heat->sources.within[cut.patch + a] = a > 0;
-    }
-    return any;
-}
-
 static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double middle, uint32_t m, radiator source) {
     const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m);
     const double own = source.temperature;
     if (heat->solution.warm) shift_radiosities(heat, b, -1);
-    const bool had = heat->solution.warm && heat->sources.has_sides[m], has = set_sides(heat, s, m, own);
-    heat->sources.has_excess[m] = has || (s->side_temperature != NULL && is_given(own) && source.emissivity > 0);
-    heat->sources.has_sides[m] = has, heat->sources.sides = heat->sources.sides || has;
-    heat->sources.guessed = heat->sources.guessed || (has && !had);
-    if (!had) heat->sources.beyond[m] = 0;
-    if (heat->sources.has_excess[m]) {
+    const bool kept = heat->solution.warm && heat->sources.has_sides[m] && is_given(heat->sources.temperature[b]);
+    const fibrad_mesh *mesh = &heat->scene->mesh;
+    bool *has = &heat->sources.has_sides[m];
+    *has = false, heat->sources.of_others[m] = own;
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1] && is_given(own); k++)
+        *has = *has || fibrad_heat_side_of(heat, s, mesh->side[k]).found;
+    heat->sources.sides = heat->sources.sides || *has;
+    heat->sources.has_excess[m] = *has || (s->side_temperature != NULL && is_given(own) && source.emissivity > 0);
+    if (*has && kept) {
+        source.temperature = heat->sources.temperature[b];
+    } else if (heat->sources.has_excess[m]) {
         source.temperature = mean_temperature(heat, s, m, own);
-        find_excess(heat, s, m, own, source.temperature, had);
+        find_excess(heat, s, m, own, source.temperature);
+        heat->sources.beyond[m] = 0;
     }
     set_body(heat, s, middle, b, &source);
     shift_radiosities(heat, b, 1);
@@ -609,9 +575,9 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
         const radiator source = of_sphere(sources, heat->order[b]);
         set_body(heat, sources, middle, b, &source);
     }
-    heat->sources.side_temperature = sources->side_temperature, heat->sources.side_film = sources->side_film;
-    heat->sources.side_gas = sources->side_gas, heat->sources.side_power = sources->side_power;
-    heat->sources.sides = heat->sources.guessed = false, heat->sources.changed = __builtin_inf();
+    heat->sources.asked = *sources;
+    heat->sources.sides = heat->sources.passed = false;
+    if (!heat->solution.warm) fibrad_zero(heat->solution.coarse, heat->bodies * sizeof *heat->solution.coarse);
     set_walls(heat, sources, middle);
     unknown = heat->sources.sides;
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
@@ -628,7 +594,6 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     fibrad_zero(heat->solution.span, heat->spheres * sizeof *heat->solution.span);
     set_conduction(heat, sources);
     begin_spots(heat, sources);
-    if (heat->sources.guessed) heat->sources.first_tolerance = FIBRAD_HEAT_FIRST_TOLERANCE;
     heat->contacts.sigma = sources->sigma, heat->contacts.zero = sources->surroundings;
     heat->solution.sweeps = 0;
     heat->contacts.afresh = !heat->solution.warm;

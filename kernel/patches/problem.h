@@ -158,20 +158,19 @@ typedef struct fibrad_heat_given {
     double wall_emission[FIBRAD_WALLS]; /* by slot; 0: the wall emits nothing */
     bool insulated[FIBRAD_HEAT_OTHERS]; /* by body, from the first wall on */
     double *excess; /* [patches of all meshes], emission minus that of the body, if sides have temperatures */
-    bool has_excess[FIBRAD_WALLS_MAX]; /* [meshes], whether sides of the mesh have temperatures */
-    /* of sides.c */
-    bool has_sides[FIBRAD_WALLS_MAX]; /* [meshes], whether temperatures of sides are to be found */
-    bool sides;                       /* some mesh has */
-    bool guessed;                     /* the coarser level has first guesses of these */
-    const double *side_temperature, *side_film, *side_gas, *side_power; /* the caller's */
+    bool has_excess[FIBRAD_WALLS_MAX];  /* [meshes], whether sides of the mesh have temperatures */
+    bool has_sides[FIBRAD_WALLS_MAX];   /* [meshes], whether temperatures of sides are to be found */
+    bool sides;                         /* some mesh has such sides; the next three are of their search: */
+    bool passed, held, below;           /* both levels were searched; some temperature or film is given; T < 0 */
+    double changed;                     /* square of what has changed between two searches of the finer level */
+    fibrad_heat_sources asked;          /* the caller's, of which the arrays of sides are used */
     double of_others[FIBRAD_WALLS_MAX]; /* K, [meshes], of sides that have no temperature of their own */
-    double beyond[FIBRAD_WALLS_MAX];    /* [meshes], what sides gain per area besides the flows of their patches */
-    double changed;                     /* square of the last change of emissions from search to search */
-    double *still, *answer;             /* [patches of all meshes], emission without arriving radiation; its slope */
-    unsigned char *within;              /* [patches of all meshes], 1: of the side of the patch before */
-    const double *light;                /* [patches] power that arrives from outside, the caller's; NULL: none */
-    const double *absorbed;             /* [patches] light that patches have absorbed, the caller's; NULL: none */
-    bool free_level;                    /* the sources fix differences of emissions, but not their level */
+    double beyond[FIBRAD_WALLS_MAX];    /* [meshes], what fluxes have besides those of patches, if no power is coarse */
+    double *still, *answer; /* [patches of all meshes], emission without arriving radiation, and its slope */
+    unsigned char *within;  /* [patches of all meshes], 1: of the side of the patch before */
+    const double *light;    /* [patches] power that arrives from outside, the caller's; NULL: none */
+    const double *absorbed; /* [patches] light that patches have absorbed, the caller's; NULL: none */
+    bool free_level;        /* the sources fix differences of emissions, but not their level */
     double sigma, surroundings;
     double tolerance, settled; /* of the residual; of what steps to come would change in powers, over these */
     uint32_t limit;            /* sweeps after which to stop */

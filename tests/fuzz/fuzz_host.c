@@ -114,7 +114,8 @@ static void try_factors(struct session *s) {
 /* The sources and their arrays. */
 struct sources {
     fibrad_heat_sources sources;
-    double temperature[SPHERES], power[SPHERES], wall_temperature[WALLS], wall_power[WALLS], side[2 * TRIANGLES];
+    double temperature[SPHERES], power[SPHERES], wall_temperature[WALLS], wall_power[WALLS];
+    double side[4][2 * TRIANGLES]; /* temperatures, films, gas, powers */
     unsigned char insulated[WALLS];
     bool usual; /* no number is out of the usual range of a bed */
 };
@@ -137,13 +138,18 @@ static void any_sources(struct session *s, struct sources *all, bool known, bool
         all->wall_temperature[b] = kind % 5 == 0 ? NAN : kind / 16., all->wall_power[b] = kind % 5 == 0 ? kind % 3 : 0;
         all->insulated[b] = kind % 7 == 0;
     }
-    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) all->side[k] = k % 3 == 0 ? 1 + which / 16. : NAN;
+    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) {
+        all->side[0][k] = k % 3 == 0 ? 1 + which / 16. : NAN, all->side[1][k] = k % 3 == 1 ? which / 16. : 0;
+        all->side[2][k] = 1 + k % 7, all->side[3][k] = k % 3 == 2 && which % 4 < 2 ? which / 64. - 1 : NAN;
+    }
     f->temperature = all->temperature, f->emissivity = s->emissivity, f->power = all->power;
     f->wall_temperature = all->wall_temperature, f->wall_emissivity = s->wall_emissivity;
     f->wall_power = all->wall_power, f->insulated = all->insulated;
     if (which == 2) f->sigma = coordinate();
     if (which == 3) f->temperature = NULL;
-    if (which > 200 && s->contents.triangles.n > 0) f->side_temperature = all->side;
+    if (which > 200 && s->contents.triangles.n > 0) f->side_temperature = all->side[0];
+    if (which % 8 == 5 && s->contents.triangles.n > 0)
+        f->side_film = all->side[1], f->side_gas = all->side[2], f->side_power = all->side[3];
 }
 
 /* Asserts that powers add up to zero. */
@@ -219,6 +225,12 @@ static void advance(struct session *s, struct sources *all) {
     span.tolerance = 1e-2, span.power = power, span.wall_power = wall_power, span.wall_energy = wall_energy;
     span.context = s;
     fibrad_law follow = {.follow = law, .context = s};
+    double side_end[2][2 * TRIANGLES], side_energy[2 * TRIANGLES], side_found[2 * TRIANGLES], convected[SPHERES];
+    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++)
+        side_end[0][k] = all->side[0][k] + 1, side_end[1][k] = all->side[2][k] * 2;
+    if (which % 4 == 3) span.side_energy = side_energy, span.side_end = side_found, span.convected_energy = convected;
+    if (which % 8 == 3 && all->sources.side_temperature) span.side_temperature = side_end[0];
+    if (which % 8 == 7 && all->sources.side_gas) span.side_gas = side_end[1];
     if (which > 240) span.law = &follow, s->law = which, s->asked = 0;
     if (which == 2 && !(span.step > .01)) span.step = .1;
     all->sources.tolerance = 1e-2, all->sources.sigma *= .01; /* few steps */
@@ -233,6 +245,7 @@ static void advance(struct session *s, struct sources *all) {
         sources += all->power[i] * span.duration;
     }
     for (uint32_t b = 0; b < s->contents.config.walls; b++) given += wall_energy[b], size += fabs(wall_energy[b]);
+    for (uint32_t i = 0; i < s->contents.n && span.convected_energy; i++) REQUIRE(convected[i] == 0);
     if (all->usual) REQUIRE(fabs(stored + given - sources) <= 1e-8 * (size + fabs(sources)) + 1e-9);
 }
 

@@ -29,9 +29,10 @@ struct session {
     uint32_t heat_version, tasks, parts;
     unsigned char *traced, swept[16];
     bool begun, solved, of_other;
-    bool measured; /* temperatures and sigma allow powers to be compared with rounding */
-    bool unknown;  /* some temperatures are unknown */
-    bool wide;     /* the input asks for everything: rows of walls, triangles, unknown temperatures */
+    bool measured;                 /* temperatures and sigma allow powers to be compared with rounding */
+    bool unknown;                  /* some temperatures are unknown */
+    bool wide;                     /* the input asks for everything: rows of walls, triangles, unknown temperatures */
+    double side[4][2 * TRIANGLES]; /* temperatures, films, gas and powers of sides, which stay until the solution */
 };
 
 enum { BEAM, CAST, RAYS, SURFACE, EXCHANGE, METHODS };
@@ -400,7 +401,7 @@ static void trace_task(struct session *s, uint32_t task) {
 
 /* The powers and other values of walls whose temperatures are unknown. */
 struct unknowns {
-    double power[SPHERES], storage[SPHERES], reference[SPHERES], wall_power[WALLS], side[2 * TRIANGLES];
+    double power[SPHERES], storage[SPHERES], reference[SPHERES], wall_power[WALLS];
     unsigned char insulated[WALLS];
 };
 
@@ -417,10 +418,20 @@ static void any_unknowns(struct session *s, struct unknowns *u, double *temperat
         if (kind % 3 == 0) wall_temperature[b] = NAN;
         u->wall_power[b] = isnan(wall_temperature[b]) ? share() : 0, u->insulated[b] = kind % 5 == 0;
     }
-    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) u->side[k] = byte() % 4 == 0 ? share() : NAN;
+    for (uint32_t k = 0; k < 2 * s->contents.triangles.n; k++) s->side[0][k] = byte() % 4 == 0 ? share() : NAN;
     sources->power = u->power, sources->wall_power = u->wall_power, sources->insulated = u->insulated;
     if (byte() % 2) sources->storage = u->storage, sources->reference = u->reference;
-    if (s->contents.triangles.n > 0 && byte() % 2) sources->side_temperature = u->side;
+    if (s->contents.triangles.n == 0) return;
+    if (byte() % 2) sources->side_temperature = s->side[0];
+    const uint8_t which = byte();
+    for (uint32_t k = 0; k < 2 * s->contents.triangles.n && which % 4 == 1; k++) {
+        const uint8_t kind = byte();
+        s->side[1][k] = kind % 3 == 0 ? share() : 0, s->side[2][k] = kind < 250 ? kind / 64. : coordinate();
+        s->side[3][k] = kind % 4 == 0 ? share() - .5 : NAN;
+        if (s->side[1][k] > 0 || kind % 4 == 0) s->side[0][k] = kind < 250 ? NAN : s->side[0][k];
+    }
+    if (which % 4 == 1)
+        sources->side_film = s->side[1], sources->side_gas = s->side[2], sources->side_power = s->side[3];
 }
 
 static void begin_solution(struct session *s) {

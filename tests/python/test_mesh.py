@@ -103,3 +103,23 @@ def test_meshes_that_are_refused():
         fibrad.Mesh(np.eye(3), [[0, 1, 3]])
     with pytest.raises(fibrad.InputError, match="triangles must be"):
         fibrad.Mesh(np.eye(3), [[0.0, 1.0, 2.0]])
+
+
+def test_films_and_powers_of_triangles():
+    """What is found is what its temperatures give, at once and at the end of a span."""
+    tub = fibrad.Mesh(np.concatenate([mesh.vertices for mesh in box().values()]),
+                      np.concatenate([mesh.triangles + 4 * k for k, mesh in enumerate(box().values())]))
+    film, gas, power = np.arange(12.0) % 3 * 8, np.linspace(300, 600, 12), np.where(np.arange(12) % 3, np.nan, 40.0)
+    keys = {"temperature": 500, "convection": film, "gas": gas, "power": power, "emissivity": 0.6}
+    with fibrad.Bed(X, R, walls=fibrad.wall(tub, name="tub", **keys)) as bed:
+        powers = bed.solve(**STATE, tolerance=1e-9)
+        flux, kelvins = powers.triangle_fluxes["tub"][:, 0], powers.triangle_temperatures["tub"][:, 0]
+        assert np.allclose(flux + film * (gas - kelvins) + np.nan_to_num(power / tub.areas()), 0, atol=1e-4)
+        given = bed.solve(**STATE, tolerance=1e-9, walls=fibrad.wall(tub, name="tub", temperature=kelvins, convection=np.zeros(12)))
+        assert np.allclose(given.triangle_fluxes["tub"][:, 0], flux, atol=1e-4)
+        ended = bed.advance([400, 900], 20, capacity=[20, 30], emissivity=[0.5, 0.8], surroundings=0)
+        assert np.nansum(ended.triangle_energies["tub"]) == pytest.approx(ended.walls["tub"], rel=1e-12)
+        assert np.isfinite(ended.triangle_temperatures["tub"][:, 0]).all()
+        for wrong, text in ((film[1:], "or 12, one for each"), (-film, "convection of triangle 1 of tub is -8")):
+            with pytest.raises(fibrad.InputError, match=text):
+                bed.solve(**STATE, walls=fibrad.wall(tub, name="tub", temperature=500, convection=wrong, gas=gas))

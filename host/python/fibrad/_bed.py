@@ -501,18 +501,23 @@ class Bed:
         flow, stored, energy, capacities, ended = np.zeros(n), np.zeros(n), *np.zeros((3, len(given)))
         capacities[:] = container.capacities(given)
         sources.set_wall_power(container.powers(given, True))
+        of_sides = None if sources.behind is None else np.full((2, container.sides_count), math.nan)
         span = Span(temperature=pointer(now), capacity=pointer(heat), duration=real("duration", duration, 0, DURATION_MAX),
                     wall_temperature=pointer(end), surroundings=ctypes.pointer(around), gas=pointer(gas), inlet=inlet,
                     step=real("step", step, 0, DURATION_MAX), tolerance=real("tolerance", tolerance, 0, 1),
                     store=structures if stores else None, stores=len(stores), store_of=pointer(number, WHOLE) if stores else None,
                     melted=pointer(fraction), stored=pointer(stored), wall_capacity=pointer(capacities), wall_end=pointer(ended),
+                    side_energy=None if of_sides is None else pointer(of_sides[0]),
+                    side_end=None if of_sides is None else pointer(of_sides[1]),
                     power=pointer(flow), wall_energy=pointer(energy), law=ctypes.pointer(law) if law else None)
         self._use(library.fibrad_bed_advance, sources.c, span)
         self._warn(SOURCES)
         return Advance(temperatures=now, spheres=flow, walls=dict(zip(container.names, energy.tolist())),
                        surroundings=span.surroundings_energy, gas=span.gas_energy, gas_temperatures=sources.gas_temperatures,
                        held=span.held_energy, stored=stored, melted=fraction,
-                       wall_temperatures=dict(zip(container.names, ended.tolist())), steps=span.steps, refused=span.refused,
+                       wall_temperatures=dict(zip(container.names, ended.tolist())),
+                       triangle_energies={} if of_sides is None else container.by_mesh(of_sides[0]),
+                       triangle_temperatures={} if of_sides is None else container.by_mesh(of_sides[1]), steps=span.steps, refused=span.refused,
                        corrections=span.corrections, error=span.error)
 
 

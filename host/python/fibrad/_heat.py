@@ -207,6 +207,9 @@ class Advance:
         (n,) fraction of each sphere that has melted.
     wall_temperatures
         [K] temperatures of walls at the end, by name. NaN: that of a wall that stores no heat, and is found.
+    triangle_energies, triangle_temperatures
+        [J] and [K] (t, 2) energy that front and back of each triangle have gained, and their temperatures at the end, by
+        the name of the `Mesh`. Empty: no triangle has a film or a power behind it.
     steps
         Steps that were taken.
     refused
@@ -227,6 +230,8 @@ class Advance:
     stored: NDArray[np.float64]
     melted: NDArray[np.float64]
     wall_temperatures: dict[str, float]
+    triangle_energies: dict[str, NDArray[np.float64]]
+    triangle_temperatures: dict[str, NDArray[np.float64]]
     steps: int
     refused: int
     corrections: int
@@ -251,6 +256,8 @@ class Sources:
             raise refuse("surroundings is missing: the temperature [K] of what radiation meets that leaves the bed")
         self.joined = contacts_of(contacts, n, container)
         self.wall_temperature, self._sides = container.temperatures(walls)
+        self.behind = container.sides(walls)
+        behind: Any = (None, None, None) if self.behind is None else self.behind
         self._wall_emissivity = container.emissivities(walls)
         self.insulated = np.array(["insulated" in one.values for one in walls], np.uint8)
         self._conducts = (None if conductivity is None else
@@ -267,6 +274,7 @@ class Sources:
             tolerance=real("tolerance", tolerance, 0, 1), conductivity=pointer(self._conducts),
             wall_temperature=pointer(self.wall_temperature), wall_emissivity=pointer(self._wall_emissivity),
             insulated=pointer(self.insulated, MARKS), side_temperature=pointer(self._sides),
+            side_film=pointer(behind[0]), side_gas=pointer(behind[1]), side_power=pointer(behind[2]),
             contacts=self.joined.conductance.size, conductance=pointer(self.joined.conductance),
             contact_first=pointer(self.joined.first, WHOLE), contact_second=pointer(self.joined.second, WHOLE))
         self._around = surroundings or 300.0

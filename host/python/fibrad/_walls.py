@@ -51,9 +51,9 @@ Walls = Union[str, Wall, Iterable[Union[str, Wall]]]
 
 
 def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = False, name: Optional[str] = None,
-         temperature: Any = None, power: Optional[float] = None, insulated: bool = False,
+         temperature: Any = None, power: Optional[ArrayLike] = None, insulated: bool = False,
          emissivity: Optional[float] = None, absorptivity: Optional[float] = None,
-         convection: Optional[float] = None, gas: Optional[float] = None, capacity: Optional[float] = None,
+         convection: Optional[ArrayLike] = None, gas: Optional[ArrayLike] = None, capacity: Optional[float] = None,
          scale: float = 1.0, sides: str = "auto") -> Wall:
     """A wall, for the argument ``walls``. The words of the program say the same:
     ``"zmin:temperature=1200:emissivity=0.8,zmax:open"``.
@@ -71,16 +71,19 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
         Name of a mesh. Default: that of the file.
     temperature : float or (t,) array, optional
         [K] Of a mesh it may be an array, one value for each triangle.
-    power : float, optional
-        [W] Power that the wall gives off. Its temperature is found.
+    power : float or (t,) array, optional
+        [W] Power that the wall gives off. Its temperature is found. Of a mesh it may be an array, one value for each
+        triangle, NaN where none is given; see `convection`.
     insulated : bool
         True: the wall sends back all that arrives, point by point.
     emissivity : float, optional
         0 to 1. Default: 1.
     absorptivity : float, optional
         Of light from outside, 0 to 1. Default: the emissivity.
-    convection, gas : float, optional
-        [W/(m2 K)] Heat transfer coefficient to gas, and [K] temperature of this gas. Not of an endless wall.
+    convection, gas : float or (t,) array, optional
+        [W/(m2 K)] Heat transfer coefficient to gas, and [K] temperature of this gas. Not of an endless wall. If the
+        convection of a mesh is an array, it is that behind each triangle, 0 where there is none. The temperatures of
+        such triangles, and of those with a power, are found. The search begins with `temperature`.
     capacity : float, optional
         [J/K] In `Bed.advance` the wall stores heat: it begins at `temperature`, and may have a power, too.
     scale, sides
@@ -97,7 +100,7 @@ def wall(shape: Union[str, Mesh], *, at: Optional[float] = None, open: bool = Fa
     if useless:
         raise refuse(f"wall {word}: {useless[0]} is of no use here")
     several = ["open", *values] if open else [key for key in _HEAT if key in values]
-    if len(several) > 1 and not (capacity is not None and several == ["temperature", "power"]):
+    if len(several) > 1 and not ((capacity is not None or np.ndim(power)) and several == ["temperature", "power"]):
         raise refuse(f"wall {word}: {' and '.join(several)} exclude each other")
     if at is not None:
         place = real(f"wall {word}: at", at, -LENGTH_MAX, LENGTH_MAX)
@@ -274,11 +277,11 @@ class Container:
     def films(self, walls: list[Wall], area_of: Callable[[int], float]) -> tuple[Optional[NDArray[np.float64]],
                                                                               Optional[NDArray[np.float64]]]:
         """[walls] W/K to gas, and K of the gas, with the areas of walls. None: no wall has a convection."""
-        if not any("convection" in one.values for one in walls):
+        if all(np.ndim(one.values.get("convection", ())) for one in walls):
             return None, None
         film, kelvins = np.zeros(len(walls)), np.zeros(len(walls))
         for b, one in enumerate(walls):
-            if "convection" not in one.values:
+            if np.ndim(one.values.get("convection", ())):
                 continue
             if "gas" not in one.values or not math.isfinite(area_of(b)):
                 raise refuse(f"wall {one.name}: convection needs gas=, the temperature of the gas, and a wall that ends")
@@ -302,19 +305,44 @@ class Container:
             if not np.ndim(given):
                 kelvins[b] = real(name, given, 0, TEMPERATURE_MAX)
                 continue
-            array, count = doubles(name, given), len(part_of.get(b, ()))
-            if array.shape != (count,):
-                raise refuse(f"{name} has the shape {array.shape}; a number is wanted"
-                             + f", or {count}, one for each triangle" * (count > 0))
-            wrong = np.flatnonzero(~((array >= 0) & (array <= TEMPERATURE_MAX)))
-            if wrong.size:
-                raise refuse(f"temperature of triangle {wrong[0]} of {one.name} is {array[wrong[0]]}")
+            array = self._of_triangles(one, b, "temperature", 0, TEMPERATURE_MAX)
             part_of[b][:, 0] = array
             if one.place.back is True or one.place.back == one.name:
                 part_of[b][:, 1] = array
             kelvins[b] = float(np.average(array**4, weights=one.place.areas())) ** 0.25
         some = any(np.isfinite(part).any() for part in parts)
         return kelvins, np.concatenate(parts).ravel() if some else None
+
+    def _of_triangles(self, one: Wall, b: int, key: str, low: float, high: float, nan: bool = False) -> NDArray[np.float64]:
+        """An array that a wall has, a value for each triangle."""
+        name, array = f"{key} of wall {one.name}", doubles(f"{key} of wall {one.name}", one.values[key])
+        count = dict((number, len(mesh.triangles)) for number, mesh in self._meshes).get(b, 0)
+        if array.shape != (count,):
+            raise refuse(f"{name} has the shape {array.shape}; a number is wanted"
+                         + f", or {count}, one for each triangle" * (count > 0))
+        wrong = np.flatnonzero(~((array >= low) & (array <= high) | nan & np.isnan(array)))
+        if wrong.size:
+            raise refuse(f"{key} of triangle {wrong[0]} of {one.name} is {array[wrong[0]]}")
+        return array
+
+    def sides(self, walls: list[Wall]) -> Optional[NDArray[np.float64]]:
+        """(3, 2 t) films, gas temperatures and powers per area of sides. None: no wall has any."""
+        sides, start = np.zeros((3, self.sides_count)), 0
+        sides[2] = math.nan
+        for b, mesh in self._meshes:
+            one, end = walls[b], start + 2 * len(mesh.triangles)
+            both = one.place.back is True or one.place.back == one.name
+            to = sides[:, start:end].reshape(3, -1, 2)[:, :, :2 if both else 1]
+            if np.ndim(one.values.get("convection", 0)):
+                gas = one.values.get("gas", math.nan)
+                to[0] = self._of_triangles(one, b, "convection", 0, 1e12)[:, None]
+                to[1] = (self._of_triangles(one, b, "gas", 0, TEMPERATURE_MAX, True)[:, None] if np.ndim(gas)
+                         else real(f"gas of wall {one.name}", gas, 0, TEMPERATURE_MAX))
+            if np.ndim(one.values.get("power", 0)):
+                power = self._of_triangles(one, b, "power", -POWER_MAX, POWER_MAX, True)
+                to[2] = (power / mesh.areas() / to.shape[2])[:, None]
+            start = end
+        return sides if sides[0].any() or np.isfinite(sides[2]).any() else None
 
     def capacities(self, walls: list[Wall]) -> NDArray[np.float64]:
         """[walls] heat capacities, 0 where none is given."""
@@ -324,6 +352,7 @@ class Container:
         """[walls] powers that walls give off, NaN where none is given. Those of walls that have temperatures, too, count
         if `storing`. None: no wall has one."""
         given = [one.values.get("power") if storing or "temperature" not in one.values else None for one in walls]
+        given = [None if np.ndim(power) else power for power in given]
         if given == [None] * len(walls):
             return None
         return np.array([math.nan if power is None else real(f"power of wall {one.name}", power, -POWER_MAX, POWER_MAX)
