@@ -113,7 +113,8 @@ static int wait_for_turn(const struct exchange *exchange, enum turn *turn) {
     while (!(status = look_at_lock(foam, turn)) && *turn == THEIRS && !(status = interrupt_status())) {
         foam->silent = waited > exchange->timeout;
         if (foam->silent)
-            return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; has it ended?", foam->folder, waited);
+            return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; has it ended?", foam->folder,
+                           exchange->timeout);
         nanosleep(&pause, NULL);
         waited += 1e-9 * (double)pause.tv_nsec;
         if (pause.tv_nsec < LONGEST_PAUSE) pause.tv_nsec += pause.tv_nsec / 4;
@@ -172,7 +173,7 @@ static double distance_between(const double a[3], const double b[3]) {
 
 /* Reads the corners of a face among n points. */
 static int read_corners(struct numbers *from, double (*point)[3], int n, struct patch_face *face) {
-    const double *corner[CORNERS_MOST];
+    const double *corner[CORNERS_MOST] = {0};
     double area[3] = {0};
     int corners, index = 0;
     int status = next_whole(from, CORNERS_MOST + 1, &corners, NULL);
