@@ -77,7 +77,7 @@ HOST    := $(filter-out $(addprefix host/,simple/% couple/% python/% tables/%),$
 TESTS   := $(call sources,tests/test_*.c)
 SCRIPTS := $(filter-out tests/couple/% tests/freestanding/%,$(call sources,tests/check_*.sh tests/*/check_*.sh))
 # other machines, and what takes long: `make nightly`
-NIGHTLY := tests/check_dist.sh tests/package/check_deb.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh \
+NIGHTLY := tests/check_dist.sh tests/package/check_deb.sh tests/check_tables.sh tests/couple/check_made.sh tests/couple/check_pages.sh tests/partner/check_openfoam.sh \
            tests/test_furnace.c tests/test_reproduce.c
 
 PEERS   := $(call sources,bench/bench_embree*.c) # built and run where Embree 3 is found (Debian: libembree-dev)
@@ -467,6 +467,7 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	BUILD=$(BUILD) MAKE="$(MAKE)" tests/check_dist.sh all
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/package/check_deb.sh
 	BUILD=$(BUILD) tests/check_tables.sh all
+	BUILD=$(BUILD) tests/partner/check_openfoam.sh
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)"
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
 	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
@@ -498,7 +499,7 @@ deps-ci:
 ## deps-nightly: install the further packages that nightly needs
 deps-nightly: deps deps-ci deps-couple
 	@$(DEPS) clang-tidy cppcheck gcc-aarch64-linux-gnu libc6-dev-arm64-cross qemu-user gcc-arm-none-eabi qemu-system-arm \
-	    cmake dpkg-dev lintian yade
+	    cmake dpkg-dev lintian yade openfoam
 
 ## man: manual pages of the program and its commands, made from --help into build/man
 man: $(BUILD)/man/fibrad.1

@@ -30,6 +30,7 @@
 
 #define AREA_TOLERANCE 0.02     /* of areas that should be the same */
 #define FIRST_FILM     10       /* [W/(m2 K)] in a first window in which no face has one */
+#define TIMEOUT_OF_END 60       /* [s] after an error */
 #define LONGEST_PAUSE  50000000 /* [ns] between two looks at the lock */
 
 #define GO_ON "status=openfoam\n"
@@ -40,7 +41,7 @@ struct patch_face {
     double centre[3], area, size; /* [m] mean of the corners; [m2]; [m] the largest distance of a corner from it */
     double ours;                  /* [m2] area of our triangles at this face */
     double film, behind;          /* [W/(m2 K)] the last one, 0: there was none yet; [K] */
-    double fourth;                /* [K4] mean T^4 of our triangles; 0: not known yet */
+    double found;                 /* [K] mean over our triangles; 0: not known yet */
 };
 
 struct openfoam {
@@ -53,7 +54,7 @@ struct openfoam {
 };
 
 /* The path of a file, until PATHS others have been made. */
-static const char *path_of(const char *folder, const char *name) {
+static const char *foam_file(const char *folder, const char *name) {
     static char paths[PATHS][OUTPUT_PATH];
     static unsigned next;
     char *path = paths[next++ % PATHS];
@@ -68,8 +69,8 @@ enum turn { THEIRS, OURS, FIRST, NOBODYS };
 /* Finds the folder with patchFaces. */
 static int find_group(struct openfoam *foam) {
     glob_t found = {0};
-    glob(path_of(foam->folder, "*/patchFaces"), 0, NULL, &found);
-    glob(path_of(foam->folder, "*/*/patchFaces"), found.gl_pathv ? GLOB_APPEND : 0, NULL, &found);
+    glob(foam_file(foam->folder, "*/patchFaces"), 0, NULL, &found);
+    glob(foam_file(foam->folder, "*/*/patchFaces"), found.gl_pathv ? GLOB_APPEND : 0, NULL, &found);
     int status = STATUS_OK;
     if (found.gl_pathc > 1)
         status = message(STATUS_INPUT, "%s and %s: put all patches beside the bed into one group", found.gl_pathv[0],
@@ -81,23 +82,23 @@ static int find_group(struct openfoam *foam) {
     return status;
 }
 
-static int find_turn(struct openfoam *foam, enum turn *turn) {
+static int look_at_lock(struct openfoam *foam, enum turn *turn) {
     *turn = THEIRS;
     const int status = *foam->group ? STATUS_OK : find_group(foam);
     if (status || !*foam->group) return status;
     struct stat faces;
     char text[64] = "";
-    const char *path = path_of(foam->folder, "OpenFOAM.lock");
+    const char *path = foam_file(foam->folder, "OpenFOAM.lock");
     FILE *lock = fopen(path, "r");
     if (!lock && errno != ENOENT) return message_at(STATUS_FILE, path, 0, "%s", strerror(errno));
     if (lock) {
         if (fgets(text, sizeof text, lock) && strstr(text, "done") && foam->begun) *turn = NOBODYS;
         fclose(lock);
-    } else if (access(path_of(foam->group, "T.out"), F_OK) == 0)
+    } else if (access(foam_file(foam->group, "T.out"), F_OK) == 0)
         *turn = OURS;
     else if (foam->begun)
         *turn = NOBODYS;
-    else if (stat(path_of(foam->group, "patchFaces"), &faces) == 0 && time(NULL) > faces.st_mtime + 1)
+    else if (stat(foam_file(foam->group, "patchFaces"), &faces) == 0 && time(NULL) > faces.st_mtime + 1)
         *turn = FIRST; /* now patchFaces is complete. OpenFOAM looks for our files once a second */
     foam->begun = foam->begun || *turn == OURS;
     return STATUS_OK;
@@ -109,7 +110,7 @@ static int wait_for_turn(const struct exchange *exchange, enum turn *turn) {
     struct timespec pause = {.tv_nsec = 1000000};
     double waited = 0;
     int status;
-    while (!(status = find_turn(foam, turn)) && *turn == THEIRS && !(status = interrupt_status())) {
+    while (!(status = look_at_lock(foam, turn)) && *turn == THEIRS && !(status = interrupt_status())) {
         foam->silent = waited > exchange->timeout;
         if (foam->silent)
             return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; has it ended?", foam->folder, waited);
@@ -165,12 +166,12 @@ static int next_whole(struct numbers *from, int end, int *value, bool *more) {
 
 /* ---- faces ------------------------------------------------------------------------------------------------------- */
 
-static double distance_of(const double a[3], const double b[3]) {
+static double distance_between(const double a[3], const double b[3]) {
     return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
 /* Reads the corners of a face among n points. */
-static int read_face(struct numbers *from, double (*point)[3], int n, struct patch_face *face) {
+static int read_corners(struct numbers *from, double (*point)[3], int n, struct patch_face *face) {
     const double *corner[CORNERS_MOST];
     double area[3] = {0};
     int corners, index = 0;
@@ -184,9 +185,9 @@ static int read_face(struct numbers *from, double (*point)[3], int n, struct pat
         const double *const o = corner[0], *const a = corner[k], *const b = corner[(k + 1) % corners];
         for (int c = 0, d = 1, e = 2; c < 3; d = e, e = c++)
             area[c] += ((a[d] - o[d]) * (b[e] - o[e]) - (a[e] - o[e]) * (b[d] - o[d])) / 2;
-        face->size = fmax(face->size, distance_of(face->centre, a));
+        face->size = fmax(face->size, distance_between(face->centre, a));
     }
-    face->area = distance_of(area, (const double[3]){0});
+    face->area = distance_between(area, (const double[3]){0});
     return status;
 }
 
@@ -196,15 +197,16 @@ static int read_faces(struct openfoam *foam) {
     double(*point)[3] = NULL;
     bool more = true, good = true;
     int n, of_patch = 0;
-    int status = lines_open(&points.lines, path_of(foam->group, "patchPoints"));
-    if (!status) status = lines_open(&faces.lines, path_of(foam->group, "patchFaces"));
+    int status = lines_open(&points.lines, foam_file(foam->group, "patchPoints"));
+    if (!status) status = lines_open(&faces.lines, foam_file(foam->group, "patchFaces"));
     while (!status && !(status = next_whole(&points, INT32_MAX, &n, &more)) && more) {
         point = memory_resized(point, (size_t)n * sizeof *point, &good);
-        for (int k = 0; good && !status && k < 3 * n; ++k) status = next_number(&points, &point[k / 3][k % 3], NULL);
+        for (size_t k = 0; good && !status && k < 3 * (size_t)n; ++k)
+            status = next_number(&points, &point[k / 3][k % 3], NULL);
         if (!status) status = next_whole(&faces, INT32_MAX, &of_patch, NULL);
         for (int k = 0; good && !status && k < of_patch; ++k) {
             foam->face = memory_grown(foam->face, (size_t)foam->n, sizeof *foam->face, &good);
-            if (good) status = read_face(&faces, point, n, &foam->face[foam->n++]);
+            if (good) status = read_corners(&faces, point, n, &foam->face[foam->n++]);
         }
         if (!good) status = message_memory();
     }
@@ -229,7 +231,7 @@ static int compare_along(const void *a, const void *b) {
 }
 
 /* Finds the face with the nearest centre for each triangle, no farther than the size of that face. */
-static int find_faces(const struct exchange_faces *faces, struct openfoam *foam) {
+static int find_nearest_faces(const struct exchange_faces *faces, struct openfoam *foam) {
     double largest = 0;
     struct along *sorted = malloc(((size_t)foam->n + 1) * sizeof *sorted);
     foam->at = malloc(((size_t)faces->n + 1) * sizeof *foam->at);
@@ -246,7 +248,7 @@ static int find_faces(const struct exchange_faces *faces, struct openfoam *foam)
         for (int step = 1 << 30; step > 0; step /= 2)
             if (step <= foam->n - low && sorted[low + step - 1].at < at - largest) low += step;
         for (int k = low; k < foam->n && sorted[k].at <= at + least; ++k) {
-            const double away = distance_of(foam->face[sorted[k].face].centre, faces->centre[t]);
+            const double away = distance_between(foam->face[sorted[k].face].centre, faces->centre[t]);
             if (away <= least) least = away, found = sorted[k].face;
         }
         foam->at[t] = found != NO_FACE && least <= foam->face[found].size ? found : NO_FACE;
@@ -255,20 +257,20 @@ static int find_faces(const struct exchange_faces *faces, struct openfoam *foam)
     return STATUS_OK;
 }
 
-/* The unit of length that one of two areas has, if the other has metres; 0: there is none. */
-static double unit_between(double a, double b) {
+/* Whether two areas are the same, but for the unit of length. */
+static bool units_differ(double a, double b) {
     static const char *const names[] = {"cm", "mm", "um", "nm", "angstrom"};
     const double ratio = sqrt(fmin(a, b) / fmax(a, b));
     double unit;
     for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-        if (unit_of_length(names[k], &unit) && fabs(ratio / unit - 1) < AREA_TOLERANCE) return unit;
-    return 0;
+        if (unit_of_length(names[k], &unit) && fabs(ratio / unit - 1) < AREA_TOLERANCE) return true;
+    return false;
 }
 
 /* Each triangle must be at a face, and each face must have triangles. Their areas must be the same. */
 static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
     const struct exchange_faces *faces = &exchange->faces;
-    const int status = find_faces(faces, foam);
+    const int status = find_nearest_faces(faces, foam);
     if (status) return status;
     double ours = 0, theirs = 0;
     const double *first = NULL; /* what has no partner */
@@ -284,39 +286,34 @@ static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
         theirs += foam->face[k].area;
         if (!(foam->face[k].ours > 0) && bare++ == 0 && far == 0) first = foam->face[k].centre;
     }
-    const char *path = path_of(foam->group, "patchFaces");
-    const double unit = unit_between(ours, theirs);
-    if (unit > 0)
-        return message_at(
-            STATUS_INPUT, path, 0,
-            "the faces have %g m2, and the triangles of the bed %g m2: two units of length, one %g of the other",
-            theirs, ours, unit);
-    if (far > 0)
-        return message_at(
-            STATUS_INPUT, path, 0,
-            "%u of %u triangles of the bed are at no face, the first at (%g, %g, %g) m; --faces names walls", far,
-            faces->n, first[0], first[1], first[2]);
-    if (bare > 0)
-        return message_at(STATUS_INPUT, path, 0,
-                          "%u of %d faces are at no triangle of the bed, the first at (%g, %g, %g) m", bare, foam->n,
-                          first[0], first[1], first[2]);
-    if (!(fabs(ours - theirs) <= AREA_TOLERANCE * theirs))
-        return message_at(STATUS_INPUT, path, 0, "the faces have %g m2, and the triangles of the bed %g m2", theirs,
-                          ours);
-    return STATUS_OK;
+    char why[200] = "";
+    const bool units = units_differ(ours, theirs);
+    if (units || !(far || bare || fabs(ours - theirs) <= AREA_TOLERANCE * theirs))
+        snprintf(why, sizeof why, "the faces have %g m2, and the triangles of the bed %g m2", theirs, ours);
+    else if (far)
+        snprintf(why, sizeof why, "%u of %u triangles of the bed are at no face, the first at (%g, %g, %g) m", far,
+                 faces->n, first[0], first[1], first[2]);
+    else if (bare)
+        snprintf(why, sizeof why, "%u of %d faces are at no triangle of the bed, the first at (%g, %g, %g) m", bare,
+                 foam->n, first[0], first[1], first[2]);
+    return *why ? message_at(STATUS_INPUT, foam_file(foam->group, "patchFaces"), 0, "%s%s", why,
+                             units ? ": these are two units of length"
+                             : far ? "; see --faces"
+                                   : "")
+                : STATUS_OK;
 }
 
 /* ---- rows -------------------------------------------------------------------------------------------------------- */
 
 /* Reads the row of a face. OpenFOAM writes an htc of 0 if wall and cell differ by less than 1e-3 K. Then the film stays
  * the last one, and `behind` is the temperature of the wall. */
-static int read_row(struct numbers *from, struct patch_face *face) {
-    double area, wall = 0, flux, film = 0;
-    int status = next_number(from, &area, NULL);
-    if (!status) status = next_number(from, &wall, NULL);
-    if (!status) status = next_number(from, &flux, NULL);
-    if (!status) status = next_number(from, &film, NULL);
-    if (status) return status;
+static int read_flux(struct numbers *from, struct patch_face *face) {
+    double value[4];
+    for (int k = 0; k < 4; ++k) {
+        const int status = next_number(from, &value[k], NULL);
+        if (status) return status;
+    }
+    const double area = value[0], wall = value[1], flux = value[2], film = value[3];
     const bool good = film > 0 && isfinite(film);
     face->behind = good && !from->fluid ? wall - flux / film : wall;
     if (good) face->film = film;
@@ -331,41 +328,41 @@ static int read_row(struct numbers *from, struct patch_face *face) {
     return STATUS_OK;
 }
 
-static int read_rows(struct openfoam *foam) {
+static int read_fluxes(struct openfoam *foam) {
     struct numbers from = {0};
     bool more = false;
     double beyond;
-    int status = lines_open(&from.lines, path_of(foam->group, "T.out"));
-    for (int k = 0; !status && k < foam->n; ++k) status = read_row(&from, &foam->face[k]);
+    int status = lines_open(&from.lines, foam_file(foam->group, "T.out"));
+    for (int k = 0; !status && k < foam->n; ++k) status = read_flux(&from, &foam->face[k]);
     if (!status) status = next_number(&from, &beyond, &more);
     if (!status && more) status = lines_fault(&from.lines, "patchFaces has %d faces only", foam->n);
     numbers_close(&from);
     return status;
 }
 
-/* Finds the temperatures of faces: means of T^4 over their triangles. */
-static void take_temperatures(const struct exchange *exchange) {
+/* Finds the temperatures of faces: means over the areas of triangles. Heat through a film is linear in T, so both sides
+ * count the same heat. */
+static void average_found(const struct exchange *exchange) {
     struct openfoam *foam = exchange->state;
     const struct exchange_faces *faces = &exchange->faces;
-    for (int k = 0; k < foam->n; ++k) foam->face[k].fourth = 0;
+    for (int k = 0; k < foam->n; ++k) foam->face[k].found = 0;
     for (uint32_t t = 0; t < faces->n; ++t) {
         struct patch_face *face = &foam->face[foam->at[t]];
-        face->fourth += faces->area[t] / face->ours * pow(faces->found[t], 4);
+        face->found += faces->area[t] / face->ours * faces->found[t];
     }
 }
 
 /* Writes T.in, and then the lock. After an error in `begin` faces have no temperature yet and are insulated. */
-static int write_rows(const struct openfoam *foam, const char *lock) {
-    struct output file;
-    int status = output_open(&file, path_of(foam->group, "T.in"));
+static int write_rows(const struct openfoam *foam, const char *text) {
+    struct output rows, lock;
+    int status = output_open(&rows, foam_file(foam->group, "T.in"));
     if (status) return status;
-    for (int k = 0; k < foam->n; ++k)
-        fprintf(file.file, "%.17g 0 %d\n", sqrt(sqrt(foam->face[k].fourth)), foam->face[k].fourth > 0);
-    status = output_close(&file, STATUS_OK);
-    if (!status) status = output_open(&file, path_of(foam->folder, "OpenFOAM.lock"));
+    for (int k = 0; k < foam->n; ++k) fprintf(rows.file, "%.17g 0 %d\n", foam->face[k].found, foam->face[k].found > 0);
+    status = output_close(&rows, STATUS_OK);
+    if (!status) status = output_open(&lock, foam_file(foam->folder, "OpenFOAM.lock"));
     if (status) return status;
-    fputs(lock, file.file);
-    return output_close(&file, STATUS_OK);
+    fputs(text, lock.file);
+    return output_close(&lock, STATUS_OK);
 }
 
 /* ---- the partner ------------------------------------------------------------------------------------------------- */
@@ -374,7 +371,7 @@ static int openfoam_plan(struct exchange *exchange) {
     exchange->name = "OpenFOAM";
     struct openfoam *foam = exchange->state = calloc(1, sizeof *foam);
     if (!foam) return message_memory();
-    const bool is_case = access(path_of(exchange->folder, "system/controlDict"), F_OK) == 0;
+    const bool is_case = access(foam_file(exchange->folder, "system/controlDict"), F_OK) == 0;
     if (access(exchange->folder, X_OK) != 0) return message_at(STATUS_FILE, exchange->folder, 0, "%s", strerror(errno));
     if (strlen(exchange->folder) > OUTPUT_PATH / 4 - sizeof "/comms")
         return message(STATUS_USAGE, "--openfoam: the path is too long");
@@ -388,7 +385,7 @@ static int openfoam_begin(struct exchange *exchange) {
     int status = wait_for_turn(exchange, &turn);
     if (!status) status = read_faces(foam);
     if (!status) status = match_faces(exchange, foam);
-    if (!status) take_temperatures(exchange);
+    if (!status) average_found(exchange);
     return status;
 }
 
@@ -399,7 +396,7 @@ static int openfoam_next(struct exchange *exchange) {
     while (!(status = wait_for_turn(exchange, &turn)) && turn == FIRST)
         if ((status = write_rows(foam, GO_ON))) return status;
     exchange->length = turn == NOBODYS ? 0 : exchange->window;
-    if (!status && turn == OURS) status = read_rows(foam);
+    if (!status && turn == OURS) status = read_fluxes(foam);
     if (status || turn == NOBODYS) return status;
     double mean = 0;
     int n = 0;
@@ -416,18 +413,19 @@ static int openfoam_next(struct exchange *exchange) {
 
 static int openfoam_give(struct exchange *exchange, bool *again) {
     *again = false;
-    take_temperatures(exchange);
+    average_found(exchange);
     return write_rows(exchange->state, GO_ON);
 }
 
-/* Asks OpenFOAM to end if it has not. After an error it writes no results. */
+/* Asks OpenFOAM to end if it has not. After an error it may have ended by itself. */
 static int openfoam_end(struct exchange *exchange, int status) {
     struct openfoam *foam = exchange->state;
     if (!foam) return status;
     enum turn turn = THEIRS;
     int ending = foam->silent || !*foam->group;
+    if (status) exchange->timeout = fmin(exchange->timeout, TIMEOUT_OF_END);
     while (!ending && !(ending = wait_for_turn(exchange, &turn)) && turn != NOBODYS)
-        ending = write_rows(foam, status ? "action=noWriteNow\n" : "action=writeNow\n");
+        ending = write_rows(foam, "action=writeNow\n");
     free(foam->face);
     free(foam->at);
     free(foam);
