@@ -804,11 +804,9 @@ static bool replaces_sides(fibrad_heat *heat, bool coarse) {
 
 /* Whether what a search takes as given was replaced. */
 static bool replaces_given(fibrad_heat *heat, bool coarse) {
-    heat->sources.first_tolerance = 0;
-    const bool balancing = replaces_sides(heat, coarse);
     const bool uneven = coarse && replaces_unevenness(heat);
     const bool streaming = replaces_gas(heat);
-    return replaces_flows(heat) || uneven || streaming || balancing;
+    return replaces_flows(heat) || uneven || streaming;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
@@ -989,8 +987,9 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
-        const bool replaced = replaces_given(heat, coarse);
-        if (!replaced && !(coarse && rough)) {
+        heat->sources.first_tolerance = 0;
+        const bool balances = replaces_sides(heat, coarse), replaced = replaces_given(heat, coarse);
+        if (!balances && !replaced && !(coarse && rough)) {
             leave_level(heat);
             return;
         }
@@ -998,7 +997,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
             send_radiosities(heat);
             return;
         }
-        restart = restart || replaced;
+        restart = restart || balances || replaced;
         heat->solution.slope = find_residual(heat);
     }
     heat->solution.along = heat->solution.slope;
