@@ -72,7 +72,7 @@ static side_law law_of_side(const fibrad_heat *heat, uint32_t m, uint32_t number
 
 /* Finds `still` and `answer` of a mesh with the radiation that now arrives. Returns the mean emission of its sides.
  * Overwrites heat->solution.source. */
-#define BELOW        1e-9 /* of sigma T^4: no more than this below 0 is rounding */
+#define BELOW     1e-9 /* of sigma T^4: no more than this below 0 is rounding */
 #define REFLECTED 1e-3 /* a side reflects at least this in the search, which divides by it */
 static double find_sides_of(fibrad_heat *heat, uint32_t m) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
