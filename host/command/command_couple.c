@@ -61,7 +61,10 @@ static int couple_help(void) {
         "They\n"
         "write Power [W, conservative], Heat-Flux [W/m2] or Temperature. Particles read Temperature of the gas, and "
         "may\n"
-        "read Heat-Transfer-Coefficient. They write Power [W] to the gas, or Temperature. Lengths are in metres.\n",
+        "read Heat-Transfer-Coefficient. They write Power [W] to the gas or\n"
+        "Temperature. Or they write Source [W] and Conductance [W/K]: the gas gains Source - Conductance T at T. "
+        "Lengths "
+        "are in metres.\n",
         "OpenFOAM: The boundary condition externalCoupledTemperature and the function object externalCoupled give and\n"
         "take the files. The triangles of --faces lie on the faces of its patch.\n"
         "The partner says how long the run is. Powers are means over a window, so both sides count the same energy.\n"

@@ -7,10 +7,13 @@
 #include "heat/time_run.h"
 #include "partner/partner.h"
 
-/* When a window is repeated, its result must change smoothly with what the partner gives. Then the steps are those of
- * the first time, and solutions are this much more accurate. */
-#define REPEATED_TOLERANCE 1e-6
-#define REPEATED_RESIDUAL  1e-10
+/* When a window is repeated, its result must change smoothly with what the partner gives. So it then has equal steps,
+ * as many as it took the first time but no more than this, and powers have a smaller residual. */
+enum { REPEATED_STEPS = 4 };
+#define REPEATED_RESIDUAL 1e-9
+
+/* A temperature that grows evenly in a window counts half of what it is at the end. */
+#define RAMP .5
 
 #define FILM_LEAST 1e-6 /* [W/(m2 K)] stands for 0: the face is insulated */
 
@@ -98,11 +101,11 @@ static int make_faces(struct heat *h, struct exchange *e) {
 static int make_particles(struct heat *h, struct exchange *e) {
     struct exchange_particles *p = &e->particles;
     const struct bed *bed = h->bed;
-    double *block = calloc(7 * (size_t)bed->n + 1, sizeof *block);
+    double *block = calloc(8 * (size_t)bed->n + 1, sizeof *block);
     p->n = bed->n, p->centre = (double(*)[3])block;
     if (!block) return message_memory();
     p->gas = block + 3 * (size_t)bed->n, p->film = p->gas + bed->n, p->energy = p->film + bed->n;
-    p->found = p->energy + bed->n;
+    p->found = p->energy + bed->n, p->conductance = p->found + bed->n;
     for (uint32_t i = 0; i < bed->n; ++i) {
         const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
         for (int x = 0; x < 3; ++x) p->centre[i][x] = at[x] * bed->metres;
@@ -187,6 +190,9 @@ static void take_found(struct coupling *c) {
     }
     for (uint32_t i = 0; i < e->particles.n; ++i)
         e->particles.found[i] = span->temperature[i], e->particles.energy[i] = -span->convected_energy[i];
+    const struct film_state *films = &c->run.heat->films;
+    for (uint32_t i = 0; i < e->particles.n && films->film; ++i)
+        e->particles.conductance[i] = films->film[i] / films->per_watt * (c->windows > 0 ? RAMP : 1);
 }
 
 /* Saves the state at the beginning of a window, or goes back to it. */
@@ -205,8 +211,9 @@ static int try_window(struct coupling *c) {
     const size_t points = m->points;
     if (c->tries == 0) keep_state(c, false);
     if (c->tries == 1) {
-        m->span.step = m->heat->time.step > 0 ? m->heat->time.step : e->length / (double)m->span.steps;
-        m->span.tolerance = REPEATED_TOLERANCE, m->sources.tolerance = REPEATED_RESIDUAL;
+        const double steps = fmin((double)m->span.steps, REPEATED_STEPS);
+        m->span.step = m->heat->time.step > 0 ? m->heat->time.step : e->length / steps;
+        m->sources.tolerance = REPEATED_RESIDUAL;
     }
     ++c->tries, ++c->iterations;
     set_given(c);
@@ -224,7 +231,7 @@ static void end_window(struct coupling *c) {
     const size_t sides = h->walls.meshes ? 2 * (size_t)h->walls.meshes->triangles.n : 0;
     double faces = 0, stored = 0;
     time_keep(m);
-    m->span.step = h->time.step, m->span.tolerance = m->sources.tolerance = 0;
+    m->span.step = h->time.step, m->sources.tolerance = 0;
     for (size_t s = 0; s < sides; ++s)
         c->side[SIDE_BEGUN][s] = c->side[SIDE_END][s], c->side[BEHIND_BEGUN][s] = c->side[BEHIND_END][s];
     if (c->exchange->gives_gas) memcpy(c->gas_begun, h->films.end, h->bed->n * sizeof *c->gas_begun);
@@ -285,6 +292,7 @@ int couple_run(struct heat *h, const struct partner *partner, struct exchange *e
     if (!status) status = make_sides(&c);
     if (!status) status = partner->begin(e);
     if (!status) status = run_windows(&c, partner, ended);
+    if (c.tries > 0) keep_state(&c, true); /* the partner has failed within a window */
     if (!status && c.windows > 0 && c.written < c.run.now) status = write_now(&c);
     if (!status && c.windows > 0) status = time_report(&c.run);
     progress_stop(&h->options.progress);

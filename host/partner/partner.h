@@ -34,8 +34,9 @@ struct exchange_particles {
     /* by the partner, at the end of the window */
     double *gas, *film; /* [n] [K], [W/(m2 K)]; NaN: not given */
     /* by the bed */
-    double *energy; /* [n] [J] that the gas has gained during the window */
-    double *found;  /* [n] [K] temperature at the end of the window */
+    double *conductance; /* [n] [W/K] of the film: the gas gains less by this, on the mean, if it is 1 K hotter */
+    double *energy;      /* [n] [J] that the gas has gained during the window */
+    double *found;       /* [n] [K] temperature at the end of the window */
 };
 
 struct exchange {

@@ -54,9 +54,18 @@ static const char *const symbols[] = {"getVersionInformation",
                                       "writeData"};
 enum { SYMBOLS = sizeof symbols / sizeof *symbols };
 
-enum quantity_kind { KIND_TEMPERATURE, KIND_SINK, KIND_FILM, KIND_POWER, KIND_FLUX, KINDS };
-static const char *const kinds[KINDS] = {"Temperature", "Sink-Temperature", "Heat-Transfer-Coefficient", "Power",
-                                         "Heat-Flux"};
+enum quantity_kind {
+    KIND_TEMPERATURE,
+    KIND_SINK,
+    KIND_FILM,
+    KIND_POWER,
+    KIND_FLUX,
+    KIND_CONDUCTANCE,
+    KIND_SOURCE,
+    KINDS
+};
+static const char *const kinds[KINDS] = {
+    "Temperature", "Sink-Temperature", "Heat-Transfer-Coefficient", "Power", "Heat-Flux", "Conductance", "Source"};
 
 /* Data of a mesh of the participant, or the mesh itself if `data` is empty. */
 struct item {
@@ -73,7 +82,7 @@ struct precice {
     void *handle;
     int *id;       /* [faces, then particles] of vertices */
     double *value; /* [the same] */
-    bool created;
+    bool created, failed;
 };
 
 /* ---- the configuration ------------------------------------------------------------------------------------------- */
@@ -102,14 +111,16 @@ static int add_item(struct exchange *e, const struct xml_tag *tag, const char *m
     if (strcmp(mesh_key, "mesh") == 0) snprintf(item.data, NAME, "%.*s", NAME - 1, xml_attribute(tag, "name", value));
     item.kind = kind_of(item.data);
     const bool particles = is_of_particles(item.mesh);
-    const bool wanted = item.written
-                            ? item.kind == KIND_POWER || item.kind == KIND_TEMPERATURE || item.kind == KIND_FLUX
-                            : item.kind == KIND_TEMPERATURE || item.kind == KIND_FILM || item.kind == KIND_SINK;
-    if (item.data[0] && (!wanted || (particles && (item.kind == KIND_SINK || item.kind == KIND_FLUX))))
+    static const unsigned allowed[2][2] = {
+        {1 << KIND_TEMPERATURE | 1 << KIND_FILM | 1 << KIND_SINK,
+         1 << KIND_POWER | 1 << KIND_FLUX | 1 << KIND_TEMPERATURE},
+        {1 << KIND_TEMPERATURE | 1 << KIND_FILM,
+         1 << KIND_POWER | 1 << KIND_CONDUCTANCE | 1 << KIND_SOURCE | 1 << KIND_TEMPERATURE}};
+    if (item.data[0] && !(allowed[particles][item.written] >> item.kind & 1))
         return message_at(STATUS_USAGE, e->file, 0,
                           "%s %s %s; faces read Temperature, or Heat-Transfer-Coefficient and Sink-Temperature, and "
                           "write Power, Heat-Flux or Temperature; particles read Temperature and "
-                          "Heat-Transfer-Coefficient, and write Power or Temperature",
+                          "Heat-Transfer-Coefficient, and write Power, Source, Conductance or Temperature",
                           item.mesh, item.written ? "writes" : "reads", item.data);
     if (p->items == ITEMS)
         return message_at(STATUS_USAGE, e->file, 0, "%s has more than %d data", e->participant, ITEMS);
@@ -197,7 +208,13 @@ static int precice_choose(struct exchange *e) {
 
 static sigjmp_buf stopped;
 
-static void leave_call(int signal) { siglongjmp(stopped, signal); }
+static struct sigaction before_alarm;
+
+/* Two seconds after an interrupt the alarm ends the program. */
+static void leave_call(int signal) {
+    if (signal == SIGALRM && interrupt_status()) before_alarm.sa_handler(signal);
+    siglongjmp(stopped, signal);
+}
 
 /* Has standard output go where standard error goes, or back. Returns where it went. */
 static int redirect_output(int to) {
@@ -210,11 +227,11 @@ static int redirect_output(int to) {
 /* Calls a function of this file that calls preCICE. preCICE prints its own error, and aborts: then this says who ended.
  * A partner that says nothing in exchange->timeout ends the run, too. The log of preCICE goes to standard error. */
 static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
-    struct sigaction leave = {.sa_handler = leave_call}, before[2];
+    struct sigaction leave = {.sa_handler = leave_call}, before_abort;
     const int output = redirect_output(STDERR_FILENO);
     sigemptyset(&leave.sa_mask);
-    sigaction(SIGABRT, &leave, &before[0]);
-    sigaction(SIGALRM, &leave, &before[1]);
+    sigaction(SIGABRT, &leave, &before_abort);
+    sigaction(SIGALRM, &leave, &before_alarm);
     const int signal = sigsetjmp(stopped, 1);
     int status = STATUS_OK;
     if (signal == 0) {
@@ -222,14 +239,14 @@ static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
         status = call(e);
     }
     alarm(0);
-    sigaction(SIGABRT, &before[0], NULL);
-    sigaction(SIGALRM, &before[1], NULL);
+    sigaction(SIGABRT, &before_abort, NULL);
+    sigaction(SIGALRM, &before_alarm, NULL);
     close(redirect_output(output));
     close(output);
     if (interrupt_status()) return interrupt_status();
     if (signal == SIGABRT) status = message(STATUS_FILE, "preCICE has ended with an error, which it has printed");
     if (signal == SIGALRM) status = message(STATUS_FILE, "no word from preCICE in %g s (--timeout)", e->timeout);
-    if (signal) ((struct precice *)e->state)->created = false;
+    if (signal) ((struct precice *)e->state)->failed = true;
     return status;
 }
 
@@ -249,9 +266,11 @@ static void write_item(struct exchange *e, const struct item *item) {
                  *found = faces ? e->faces.found : e->particles.found;
     for (uint32_t k = 0; k < n; ++k) {
         const double power = e->length > 0 ? energy[from + k] / e->length : 0;
-        p->value[k] = item->kind == KIND_TEMPERATURE ? found[from + k]
-                      : item->kind == KIND_FLUX      ? power / e->faces.area[from + k]
-                                                     : power;
+        p->value[k] = item->kind == KIND_TEMPERATURE   ? found[from + k]
+                      : item->kind == KIND_FLUX        ? power / e->faces.area[from + k]
+                      : item->kind == KIND_CONDUCTANCE ? e->particles.conductance[k]
+                      : item->kind == KIND_SOURCE      ? power + e->particles.conductance[k] * e->particles.gas[k]
+                                                       : power;
     }
     p->library.write(item->mesh, item->data, (int)n, p->id + first, p->value);
 }
@@ -359,10 +378,15 @@ static int precice_give(struct exchange *e, bool *again) {
     return status;
 }
 
+/* After an error of preCICE its destructors, which run at the end of the program, would fail. */
 static int precice_end(struct exchange *e, int status) {
     struct precice *p = e->state;
     if (!p) return status;
-    if (p->created && !status) status = guarded(e, finish_now);
+    if (p->created && !p->failed && !status) status = guarded(e, finish_now);
+    if (p->failed) {
+        fflush(stdout);
+        _exit(status);
+    }
     free(p->id);
     free(p->value);
     free(p);

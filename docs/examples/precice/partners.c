@@ -2,7 +2,7 @@
  *
  *     cc partners.c -lprecice -lm -o partners
  *     ./partners Wall temperatures.xml & ./partners Gas temperatures.xml &
- *     ./partners Wall films.xml films & ./partners Gas films.xml &
+ *     ./partners Wall films.xml films & ./partners Gas films.xml films &
  *
  * Each is a participant of preCICE with one mesh. A solver of your own calls the same functions. */
 #include <math.h>
@@ -18,9 +18,9 @@ enum { ROUND = 16, ALONG = 10, LAYERS = 8, SLICES = 16 };
 
 /* A solver: vertices, what it reads at them, and how one window changes its state. */
 struct solver {
-    const char *mesh, *reads, *writes[3];
+    const char *mesh, *reads[3], *writes[3];
     int n;
-    double at[ROUND * ALONG][3], power[ROUND * ALONG], value[3][ROUND * ALONG];
+    double at[ROUND * ALONG][3], read[3][ROUND * ALONG], value[3][ROUND * ALONG];
     double state[ROUND * ALONG][LAYERS], received, lost, stored;
     void (*advance)(struct solver *s, double dt, double *lost);
 };
@@ -43,9 +43,9 @@ static void advance_wall(struct solver *s, double dt, double *lost) {
             unit[i] = ((i == 0) + (i > 0 ? in * unit[i - 1] : 0)) / left;
         }
         for (int i = LAYERS - 2; i >= 0; i--) d[i] += c[i] * d[i + 1], unit[i] += c[i] * unit[i + 1];
-        for (int i = 0; i < LAYERS; i++) s->state[v][i] = d[i] + s->power[v] / area * unit[i];
+        for (int i = 0; i < LAYERS; i++) s->state[v][i] = d[i] + s->read[0][v] / area * unit[i];
         const double response = unit[0] + dx / 2 / k;
-        s->value[0][v] = d[0] + s->power[v] / area * response, s->value[1][v] = d[0], s->value[2][v] = 1 / response;
+        s->value[0][v] = d[0] + s->read[0][v] / area * response, s->value[1][v] = d[0], s->value[2][v] = 1 / response;
         *lost += area * outside * (s->state[v][LAYERS - 1] - COLD) * dt;
     }
     s->stored = 0;
@@ -53,29 +53,37 @@ static void advance_wall(struct solver *s, double dt, double *lost) {
         for (int i = 0; i < LAYERS; i++) s->stored += heat * dx * area * (s->state[v][i] - COLD);
 }
 
-/* Gas flows upwards through slices, one vertex each. */
+/* Gas flows upwards through slices, one vertex each. It gains power, or source - conductance T at its temperature T:
+ * then T is near the final one at once. */
 static void advance_gas(struct solver *s, double dt, double *lost) {
-    const double flow = 1.5; /* [W/K] */
+    const double flow = 1.5, *power = s->read[0], *conductance = s->read[1], *source = s->read[2]; /* flow [W/K] */
     double up = COLD;
-    for (int v = 0; v < s->n; v++) s->value[0][v] = up + s->power[v] / flow / 2, up += s->power[v] / flow;
+    for (int v = 0; v < s->n; v++) {
+        const double gained = conductance[v] > 0 ? source[v] : power[v];
+        const double t = (2 * flow * up + gained) / (2 * flow + conductance[v]);
+        s->value[0][v] = t, up = 2 * t - up;
+    }
     *lost += flow * (up - COLD) * dt;
 }
 
 int main(int argc, char **argv) {
     static struct solver wall = {
         .mesh = "Wall-Mesh",
-        .reads = "Power",
+        .reads = {"Power"},
         .writes = {"Temperature", "Sink-Temperature", "Heat-Transfer-Coefficient"},
         .n = ROUND * ALONG,
         .advance = advance_wall,
     };
-    static struct solver gas = {
-        .mesh = "Gas-Mesh", .reads = "Gas-Power", .writes = {"Gas-Temperature"}, .n = SLICES, .advance = advance_gas};
+    static struct solver gas = {.mesh = "Gas-Mesh",
+                                .reads = {"Gas-Power", "Gas-Conductance", "Gas-Source"},
+                                .writes = {"Gas-Temperature"},
+                                .n = SLICES,
+                                .advance = advance_gas};
     static int id[ROUND * ALONG];
     static double kept[ROUND * ALONG][LAYERS];
     if (argc != 3 && argc != 4) return 1;
     struct solver *s = strcmp(argv[1], "Gas") == 0 ? &gas : &wall;
-    const int first = argc == 4, last = argc == 4 ? 3 : 1; /* of writes: temperatures, or films */
+    const int films = argc == 4, first = films && s == &wall, last = first ? 3 : 1; /* of writes */
     for (int v = 0; v < s->n; v++) {
         const double angle = 2 * PI * (v % ROUND + .5) / ROUND, r = s == &gas ? 0 : RADIUS;
         s->at[v][0] = r * cos(angle), s->at[v][1] = r * sin(angle);
@@ -92,9 +100,10 @@ int main(int argc, char **argv) {
         if (precicec_requiresWritingCheckpoint()) memcpy(kept, s->state, sizeof kept);
         const double dt = precicec_getMaxTimeStepSize();
         double received = 0, lost = 0;
-        precicec_readData(s->mesh, s->reads, s->n, id, dt, s->power);
+        for (int k = 0; k < (films && s == &gas ? 3 : 1); k++)
+            precicec_readData(s->mesh, s->reads[k], s->n, id, dt, s->read[k]);
         s->advance(s, dt, &lost);
-        for (int v = 0; v < s->n; v++) received += s->power[v] * dt;
+        for (int v = 0; v < s->n; v++) received += s->read[0][v] * dt;
         for (int k = first; k < last; k++) precicec_writeData(s->mesh, s->writes[k], s->n, id, s->value[k]);
         precicec_advance(dt);
         if (precicec_requiresReadingCheckpoint())
