@@ -53,7 +53,7 @@ static struct room *room_new(uint32_t cells, bool one) {
     for (int k = 0; k < SIDES; ++k) room->side_t[k] = room->side_power[k] = NAN;
     room->config =
         (fibrad_scene_config){.wall = room->mesh->wall, .walls = one ? 1 : 6, .triangles = &room->mesh->triangles};
-    for (int i = 0; i < MOST; ++i) room->e[i] = .9 - .05 * i, room->t[i] = NAN, room->clump[i] = (uint32_t)i;
+    for (int i = 0; i < MOST; ++i) room->e[i] = .9 - .05 * i, room->t[i] = NAN;
     fibrad_heat_sources *s = &room->sources;
     fibrad_heat_sources_init(s);
     s->surroundings = 0, s->tolerance = 1e-12;
@@ -155,7 +155,7 @@ static void add_extra(struct room *room, int extra, struct extra *x) {
     if (extra == CONTACT)
         s->contacts = CONTACTS, s->contact_first = x->first, s->contact_second = x->second,
         s->conductance = x->conductance;
-    if (extra == CLUMP) room->clump[1] = 0, room->at[1][0] = .5;
+    if (extra == CLUMP) room->clump[0] = room->clump[1] = 7, room->at[1][0] = .5;
     if (extra == FILM || extra == STREAM) s->film = room->film, s->gas = room->gas;
     x->capacity = 20, x->stream = (fibrad_stream){x->slice, &x->at, &x->capacity, 2, 1, 450, x->gas};
     if (extra == STREAM) s->stream = &x->stream;
@@ -479,7 +479,7 @@ LOOP_TEST(energies_of_a_span, 2) {
     struct extra extra;
     fill(room);
     add_extra(room, FILM, &extra);
-    room->clump[1] = 0, room->at[1][0] = .5, room->sources.tolerance = 0;
+    room->clump[0] = room->clump[1] = 7, room->at[1][0] = .5, room->sources.tolerance = 0;
     for (uint32_t s = 0; s < 2 * n; ++s) end[s] = room->side_t[s] + 50, gas[s] = room->side_gas[s] + 100;
     fibrad_law law = {brighter_if_hot, NULL, NULL, NULL};
     fibrad_span span = {.temperature = t,

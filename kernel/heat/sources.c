@@ -542,7 +542,7 @@ static void begin_contacts(fibrad_heat *heat, const fibrad_heat_sources *s) {
     }
     begin_stream(heat, s->stream);
     c->own_film = heat->film, c->own_gas = heat->gas, c->leader = heat->clumps.some ? heat->clumps.leader : NULL;
-    if (heat->clumps.some) join_films(heat);
+    if (heat->scene->clump != NULL) join_films(heat);
 }
 
 /* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */
