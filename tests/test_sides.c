@@ -53,7 +53,7 @@ static struct room *room_new(uint32_t cells, bool one) {
     for (int k = 0; k < SIDES; ++k) room->side_t[k] = room->side_power[k] = NAN;
     room->config =
         (fibrad_scene_config){.wall = room->mesh->wall, .walls = one ? 1 : 6, .triangles = &room->mesh->triangles};
-    for (int i = 0; i < MOST; ++i) room->e[i] = .9 - .05 * i, room->t[i] = NAN, room->clump[i] = (uint32_t)i;
+    for (int i = 0; i < MOST; ++i) room->e[i] = .9 - .05 * i, room->t[i] = NAN;
     fibrad_heat_sources *s = &room->sources;
     fibrad_heat_sources_init(s);
     s->surroundings = 0, s->tolerance = 1e-12;
@@ -138,7 +138,7 @@ static double missing(const struct room *room, uint32_t t) {
 }
 
 /* The extra of a room: spheres that conduct, contacts, clumps, films of spheres, a stream, an insulated wall, light. */
-enum { NOTHING, SOLID, CONTACT, CLUMP, FILM, STREAM, ONE_WALL, FINE, EXTRAS };
+enum { NOTHING, SOLID, CONTACT, CLUMP, FILM, STREAM, ONE_WALL, FINE, LIT, EXTRAS };
 
 struct extra {
     uint32_t first[CONTACTS], second[CONTACTS], slice[SPHERES];
@@ -155,7 +155,7 @@ static void add_extra(struct room *room, int extra, struct extra *x) {
     if (extra == CONTACT)
         s->contacts = CONTACTS, s->contact_first = x->first, s->contact_second = x->second,
         s->conductance = x->conductance;
-    if (extra == CLUMP) room->clump[1] = 0, room->at[1][0] = .5;
+    if (extra == CLUMP) room->clump[0] = room->clump[1] = 7, room->at[1][0] = .5;
     if (extra == FILM || extra == STREAM) s->film = room->film, s->gas = room->gas;
     x->capacity = 20, x->stream = (fibrad_stream){x->slice, &x->at, &x->capacity, 2, 1, 450, x->gas};
     if (extra == STREAM) s->stream = &x->stream;
@@ -167,17 +167,35 @@ static void give_found(struct room *room) {
     room->sources.side_film = room->sources.side_power = NULL;
 }
 
+/* Makes the bed and solves. Light comes from above, where the last wall is taken away. */
+static void solve_with(struct room *room, int extra) {
+    const fibrad_light light = {.direction = {0, 0, -1}, .flux = 3000};
+    double absorbed[SPHERES], first[SPHERES], walls[2][6], absorptivity[6] = {.5, .5, .5, .5, .5, .5};
+    const fibrad_light_sources lights = {&light, 1, room->e, absorptivity, 1e-12};
+    fibrad_light_result lit = {.absorbed = absorbed, .absorbed_first = first};
+    lit.wall_absorbed = walls[0], lit.wall_absorbed_first = walls[1];
+    if (extra == LIT && room->config.walls == 6)
+        room->config.walls = 5, room->mesh->triangles.n = room->mesh->triangles.n / 6 * 5,
+        room->sources.surroundings = 300;
+    make_bed(room, 1, extra == CLUMP);
+    if (extra == LIT) {
+        assert_ok(fibrad_bed_shine(room->bed, &lights, &lit));
+        ck_assert_double_gt(walls[0][0], 100);
+        room->sources.absorbed = lit.patches;
+    }
+    solve(room);
+}
+
 /* Fluxes, powers and temperatures are those of the temperatures that were found; the balance of each side closes; and
  * all powers add up to 0. Spheres that conduct and streams are found to 1e-3 and 1e-5 only. */
 LOOP_TEST(temperatures_found_and_given, EXTRAS) {
     OWNED_ROOM *room = room_new(_i == FINE ? 14 : 2, _i == ONE_WALL || _i == FINE);
     OWNED struct room *first = malloc(sizeof *first);
-    const uint32_t n = room->mesh->triangles.n;
     struct extra extra;
     fill(room);
     add_extra(room, _i, &extra);
-    make_bed(room, 1, _i == CLUMP);
-    solve(room);
+    solve_with(room, _i);
+    const uint32_t n = room->mesh->triangles.n;
     const double within = _i == SOLID || _i == STREAM ? .05 : 1e-7;
     ck_assert_double_lt(fabs(sum_of_powers(room)), 1e-10);
     double worst = 0;
@@ -193,8 +211,7 @@ LOOP_TEST(temperatures_found_and_given, EXTRAS) {
     }
     memcpy(first, room, sizeof *first);
     give_found(room);
-    make_bed(room, 1, _i == CLUMP);
-    solve(room);
+    solve_with(room, _i);
     ck_assert_double_lt(largest(room->flux, first->flux, n, 2), within);
     ck_assert_double_lt(largest(room->q, first->q, SPHERES, 1), within);
     ck_assert_double_lt(largest(room->wall_q, first->wall_q, room->config.walls, 1), within);
@@ -206,8 +223,7 @@ LOOP_TEST(temperatures_found_and_given, EXTRAS) {
     room->sources.side_power = room->side_power;
     for (uint32_t t = 1; t < n; ++t) room->side_t[2 * t] = NAN, room->side_power[2 * t] = -first->flux[2 * t];
     room->side_power[0] = NAN;
-    make_bed(room, 1, _i == CLUMP);
-    solve(room);
+    solve_with(room, _i);
     ck_assert_double_lt(largest(room->side_found, first->side_found, n, 2), within);
 }
 
@@ -404,8 +420,8 @@ static int slope_of(double time, const double *t, double *slope, void *lump) {
 /* In one span and in two. Sides have what their wall has gained, and this closes the balance. */
 TEST(a_sphere_in_time) {
     OWNED_ROOM *room = room_new(1, true);
-    struct lump l = {4 * M_PI * .16, 12, 400, 2, 800, 50};
-    const double seconds = 100;
+    struct lump l = {4 * M_PI * .16, 12, 400, 5, 8000, 50};
+    const double seconds = 40;
     double t[1] = {900}, other[1] = {900}, gas[24], energy[24], found[24], wall_energy[1], parts = 0, exact = 900;
     room->n = 1, room->r[0] = .4, room->e[0] = .7, room->wall_e[0] = 1, room->power[0] = l.power;
     for (int k = 0; k < 3; ++k) room->at[0][k] = .5;
@@ -415,7 +431,7 @@ TEST(a_sphere_in_time) {
     fibrad_span span = {.temperature = t,
                         .capacity = &l.capacity,
                         .duration = seconds,
-                        .step = .5,
+                        .step = 1,
                         .side_gas = gas,
                         .side_energy = energy,
                         .side_end = found,
@@ -430,7 +446,7 @@ TEST(a_sphere_in_time) {
     double sum = 0;
     for (int s = 0; s < 24; s += 2) {
         sum += energy[s];
-        ck_assert_double_eq_tol(found[s], side_at(&l, exact, seconds), .2); /* each has the noise of its rays */
+        ck_assert_double_eq_tol(found[s], side_at(&l, exact, seconds), .5); /* each has the noise of its rays */
         ck_assert(isnan(energy[s + 1]) && isnan(found[s + 1]));
     }
     assert_near(sum, wall_energy[0], 1e-12);
@@ -443,8 +459,8 @@ TEST(a_sphere_in_time) {
         assert_ok(fibrad_bed_advance(room->bed, &room->sources, &span));
         for (int s = 0; s < 24; s += 2) parts += energy[s];
     }
-    ck_assert_double_eq_tol(other[0], t[0], 1e-6);
-    assert_near(parts, sum, 1e-6);
+    ck_assert_double_eq_tol(other[0], t[0], 1e-3);
+    assert_near(parts, sum, 1e-4);
 }
 
 /* Films of spheres, a clump, sides of all kinds whose temperatures vary, a law, and a bed that moves: energies add up,
@@ -463,7 +479,7 @@ LOOP_TEST(energies_of_a_span, 2) {
     struct extra extra;
     fill(room);
     add_extra(room, FILM, &extra);
-    room->clump[1] = 0, room->at[1][0] = .5, room->sources.tolerance = 0;
+    room->clump[0] = room->clump[1] = 7, room->at[1][0] = .5, room->sources.tolerance = 0;
     for (uint32_t s = 0; s < 2 * n; ++s) end[s] = room->side_t[s] + 50, gas[s] = room->side_gas[s] + 100;
     fibrad_law law = {brighter_if_hot, NULL, NULL, NULL};
     fibrad_span span = {.temperature = t,

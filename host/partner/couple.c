@@ -12,9 +12,6 @@
 enum { REPEATED_STEPS = 4 };
 #define REPEATED_RESIDUAL 1e-9
 
-/* A temperature that grows evenly in a window counts half of what it is at the end. */
-#define RAMP .5
-
 #define FILM_LEAST 1e-6 /* [W/(m2 K)] stands for 0: the face is insulated */
 
 struct coupling {
@@ -178,6 +175,13 @@ static double face_temperature(const double side[2]) {
     return pow((gsl_pow_4(side[0]) + gsl_pow_4(side[1])) / 2, 0.25);
 }
 
+/* By how much the mean power to the gas falls if the gas is 1 K hotter at the end of the window. Its temperature grows
+ * evenly, but in the first window it is constant; a sphere of the capacity [J/K] follows in the meantime. */
+static double mean_conductance(const struct coupling *c, double film, double capacity) {
+    const double x = c->run.store ? 0 : film * c->exchange->length / capacity;
+    return c->windows > 0 ? film / (2 + x / 1.5) : film / (1 + x / 2);
+}
+
 /* Takes what the bed has found at the end of a window. */
 static void take_found(struct coupling *c) {
     struct exchange *e = c->exchange;
@@ -192,7 +196,7 @@ static void take_found(struct coupling *c) {
         e->particles.found[i] = span->temperature[i], e->particles.energy[i] = -span->convected_energy[i];
     const struct film_state *films = &c->run.heat->films;
     for (uint32_t i = 0; i < e->particles.n && films->film; ++i)
-        e->particles.conductance[i] = films->film[i] / films->per_watt * (c->windows > 0 ? RAMP : 1);
+        e->particles.conductance[i] = mean_conductance(c, films->film[i] / films->per_watt, span->capacity[i]);
 }
 
 /* Saves the state at the beginning of a window, or goes back to it. */

@@ -580,7 +580,7 @@ static int begin_stores(struct stepper *m, const fibrad_span *span) {
     for (uint32_t k = 0; k < span->stores; ++k) room += span->store[k].rows + 3;
     if (span->stores > 0) m->sections = malloc(span->stores * sizeof *m->sections + room * sizeof(fibrad_section));
     if (span->stores > 0 && !m->sections) return FIBRAD_E_MEMORY;
-    fibrad_section *section = (fibrad_section *)(m->sections + span->stores);
+    fibrad_section *section = m->sections ? (fibrad_section *)(m->sections + span->stores) : NULL;
     for (uint32_t k = 0; k < span->stores; section += m->sections[k++].n) {
         m->sections[k].section = section;
         fibrad_sections_make(&m->sections[k], &span->store[k]);

@@ -300,6 +300,8 @@ int fibrad_heat_init(fibrad_heat **out, void *memory, size_t size, const fibrad_
     find_origins(heat);
     for (int level = 0; level < 2; level++) fibrad_harmonics_make(&heat->harmonics[level]);
     fibrad_zero(heat->sources.unevenness, heat->spheres * sizeof(double));
+    fibrad_zero(heat->solution.coarse, heat->bodies * sizeof(double));
+    fibrad_zero(heat->solution.coarse_emission, heat->bodies * sizeof(double));
     fibrad_heat_balance(heat);
     fibrad_sobol_make(&heat->sobol);
     forget_beams(heat);

@@ -72,12 +72,13 @@ static side_law law_of_side(const fibrad_heat *heat, uint32_t m, uint32_t number
 
 /* Finds `still` and `answer` of a mesh with the radiation that now arrives. Returns the mean emission of its sides.
  * Overwrites heat->solution.source. */
-#define BELOW        1e-9 /* of sigma T^4: no more than this below 0 is rounding */
-#define LEAST_ANSWER 1e-9 /* of a mesh that reflects nothing: 1 minus its effective emissivity divides */
+#define BELOW     1e-9 /* of sigma T^4: no more than this below 0 is rounding */
+#define REFLECTED 1e-3 /* a side reflects at least this in the search, which divides by it */
 static double find_sides_of(fibrad_heat *heat, uint32_t m) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     const uint32_t b = fibrad_heat_body(heat, FIBRAD_MESHES + m), from = fibrad_heat_first_meshed(heat);
     double *still = heat->sources.still - from, *answer = heat->sources.answer - from, *areas = heat->solution.source;
+    const double eps = heat->sources.emissivity[b];
     double all = 0, sum = 0;
     for (uint32_t a = heat->first[b]; a < heat->first[b + 1]; a++) still[a] = answer[a] = areas[a] = 0;
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
@@ -91,7 +92,7 @@ static double find_sides_of(fibrad_heat *heat, uint32_t m) {
             light += heat->sources.absorbed[a] / area;
         side_law law = law_of_side(heat, m, mesh->side[k], arriving, light);
         if (!(area > 0)) law = (side_law){heat->sources.emission[b] + heat->sources.excess[cut.patch], 0};
-        if (heat->sources.emissivity[b] == 1) law.answer = fibrad_max(law.answer, LEAST_ANSWER);
+        law.answer = fibrad_max(law.answer, (REFLECTED - (1 - eps)) / eps);
         heat->sources.held = heat->sources.held || law.answer < 1;
         for (uint32_t a = begin; a < end; a++) {
             areas[a] += own, answer[a] += own * law.answer;

@@ -364,16 +364,16 @@ static void heat_by_light(fibrad_heat *heat) {
 }
 
 /* Whether there are temperatures that lead to the given powers. This is so if a temperature or a `storage` is given.
- * Otherwise the powers and the light must add up to zero. Contacts need the level of temperatures: then one must be
- * given, unless nothing of unknown temperature radiates. */
+ * Otherwise the powers and the light must add up to zero. Contacts and sides with powers need the level of
+ * temperatures: then one must be given, unless nothing of unknown temperature radiates. */
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false, absolute = heat->contacts.joins;
+    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false, levelled = heat->contacts.joins;
     for (uint32_t b = 0; b < heat->bodies; b++) {
         const bool sides = fibrad_heat_finds_sides(heat, b);
         held = held || (sides ? heat->sources.held : emitting(heat, b) > 0);
-        absolute = absolute || sides;
+        levelled = levelled || sides;
         radiates = radiates || sides || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.storage[b] == 0)
             sum += heat->sources.given_power[b], sizes += fibrad_abs(heat->sources.given_power[b]);
@@ -382,7 +382,7 @@ static bool solvable(fibrad_heat *heat) {
         sum += light, sizes += light;
     }
     heat->sources.free_level = !held;
-    if (absolute) return held || !radiates;
+    if (levelled) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
@@ -804,11 +804,9 @@ static bool replaces_sides(fibrad_heat *heat, bool coarse) {
 
 /* Whether what a search takes as given was replaced. */
 static bool replaces_given(fibrad_heat *heat, bool coarse) {
-    heat->sources.first_tolerance = 0;
-    const bool balancing = replaces_sides(heat, coarse);
     const bool uneven = coarse && replaces_unevenness(heat);
     const bool streaming = replaces_gas(heat);
-    return replaces_flows(heat) || uneven || streaming || balancing;
+    return replaces_flows(heat) || uneven || streaming;
 }
 
 /* Sets and sends the next search direction: the change that was sent, plus `keep` times the last direction. */
@@ -989,8 +987,9 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
     while (level_solved(heat)) {
         const bool coarse = heat->solution.group == FIBRAD_HEAT_FOUR;
         const bool rough = heat->sources.first_tolerance > heat->sources.tolerance;
-        const bool replaced = replaces_given(heat, coarse);
-        if (!replaced && !(coarse && rough)) {
+        heat->sources.first_tolerance = 0;
+        const bool balances = replaces_sides(heat, coarse), replaced = replaces_given(heat, coarse);
+        if (!balances && !replaced && !(coarse && rough)) {
             leave_level(heat);
             return;
         }
@@ -998,7 +997,7 @@ static void search_on(fibrad_heat *heat, bool restart, const double *product) {
             send_radiosities(heat);
             return;
         }
-        restart = restart || replaced;
+        restart = restart || balances || replaced;
         heat->solution.slope = find_residual(heat);
     }
     heat->solution.along = heat->solution.slope;

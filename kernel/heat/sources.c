@@ -443,7 +443,7 @@ static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     } else if (heat->sources.has_excess[m]) {
         source.temperature = mean_temperature(heat, s, m, own);
         find_excess(heat, s, m, own, source.temperature);
-        heat->sources.beyond[m] = 0;
+        heat->sources.beyond[m] = heat->solution.coarse[b] = 0;
     }
     set_body(heat, s, middle, b, &source);
     shift_radiosities(heat, b, 1);
@@ -542,7 +542,7 @@ static void begin_contacts(fibrad_heat *heat, const fibrad_heat_sources *s) {
     }
     begin_stream(heat, s->stream);
     c->own_film = heat->film, c->own_gas = heat->gas, c->leader = heat->clumps.some ? heat->clumps.leader : NULL;
-    if (heat->clumps.some) join_films(heat);
+    if (heat->scene->clump != NULL) join_films(heat);
 }
 
 /* Divides the memory for contacts at their places. It is used if a sphere conducts and has contacts. */
@@ -577,7 +577,6 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     }
     heat->sources.asked = *sources;
     heat->sources.sides = heat->sources.passed = false;
-    if (!heat->solution.warm) fibrad_zero(heat->solution.coarse, heat->bodies * sizeof *heat->solution.coarse);
     set_walls(heat, sources, middle);
     unknown = heat->sources.sides;
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
