@@ -84,7 +84,10 @@ static void write_out(const double *wall, int window) {
     for (int k = 0; k < FACES - (has_fault("few") && window == 1); ++k) {
         const double fluid = 300 + unlike * k, film = 20 + 10 * k, flux = film * (wall[k] - fluid);
         energy += .01 * flux * LENGTH;
-        const char *first = k == strange && has_fault("zero") ? "0" : k == strange && has_fault("nan") ? "nan" : NULL;
+        const char *first = k == strange && has_fault("zero")  ? "0"
+                            : k == strange && has_fault("nan") ? "nan"
+                            : k == strange && has_fault("row") ? ""
+                                                               : NULL;
         fprintf(file, "%.17g %s %.17g %.17g\n", k == strange && has_fault("old") ? .02 : .01,
                 first ? first : formatted("%.17g", wall[k]), flux, fabs(wall[k] - fluid) > 1e-3 ? film : 0);
     }

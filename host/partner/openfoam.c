@@ -313,12 +313,12 @@ static int read_flux(struct numbers *from, struct patch_face *face) {
     for (int k = 0; k < 4; ++k) {
         const int status = next_number(from, &value[k], NULL);
         if (status) return status;
+        if (from->fields.n != 4) return lines_fault(&from->lines, "a row `area Twall qDot htc` is expected");
     }
     const double area = value[0], wall = value[1], flux = value[2], film = value[3];
     const bool good = film > 0 && isfinite(film);
     face->behind = good && !from->fluid ? wall - flux / film : wall;
     if (good) face->film = film;
-    if (from->next < from->fields.n) return lines_fault(&from->lines, "only `area Twall qDot htc` is expected");
     if (!(wall > 0 && face->behind > 0 && face->behind < INFINITY))
         return lines_fault(&from->lines, "wall and fluid have %g K and %g K; above 0 K is expected", wall,
                            face->behind);
