@@ -52,6 +52,7 @@ for step in [0-9]*.sh; do
     python3*) test -n "$python" || { echo "SKIP recipe $step: no python3 with SciPy" && continue; }
         sed -i "s|python3|$python|" "$step" ;;
     *yade*) continue ;; # tests/python/test_examples.py
+    *lprecice*) echo '#include <precice/preciceC.h>' | "$CC" -E - >/dev/null 2>&1 || { echo "SKIP recipe $step: no preCICE" && continue; } ;;
     cc*) sed -i "s|^cc|$CC|" "$step" ;;
     lmp*) { command -v lmp >/dev/null && test -e ../build/couple/fibrad.lmp; } ||
         { echo "SKIP recipe $step: no lmp with the fix (make deps-couple lammps)" && continue; } ;;
