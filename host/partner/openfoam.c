@@ -23,7 +23,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "bed/units.h"
 #include "cli/output.h"
 #include "partner/partner.h"
 #include "text/read_number.h"
@@ -258,16 +257,6 @@ static int find_nearest_faces(const struct exchange_faces *faces, struct openfoa
     return STATUS_OK;
 }
 
-/* Whether two areas are the same, but for the unit of length. */
-static bool units_differ(double a, double b) {
-    static const char *const names[] = {"cm", "mm", "um", "nm", "angstrom"};
-    const double ratio = sqrt(fmin(a, b) / fmax(a, b));
-    double unit;
-    for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-        if (unit_of_length(names[k], &unit) && fabs(ratio / unit - 1) < AREA_TOLERANCE) return true;
-    return false;
-}
-
 /* Each triangle must be at a face, and each face must have triangles. Their areas must be the same. */
 static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
     const struct exchange_faces *faces = &exchange->faces;
@@ -288,7 +277,8 @@ static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
         if (!(foam->face[k].ours > 0) && bare++ == 0 && far == 0) first = foam->face[k].centre;
     }
     char why[200] = "";
-    const bool units = units_differ(ours, theirs);
+    const double digits = log10(ours / theirs) / 2; /* units of length differ by 10^2 or more */
+    const bool units = fabs(digits) > 1.5 && fabs(digits - round(digits)) < AREA_TOLERANCE / 2;
     if (units || !(far || bare || fabs(ours - theirs) <= AREA_TOLERANCE * theirs))
         snprintf(why, sizeof why, "the faces have %g m2, and the triangles of the bed %g m2", theirs, ours);
     else if (far)
