@@ -344,9 +344,9 @@ typedef struct fibrad_store {
  * each sphere that has melted. A sphere of infinite capacity is held: its temperature stays. held_energy is what held
  * spheres gain, their powers included.
  *
- * side_energy of the sides of a wall adds up to its wall_energy, and to the light that it absorbs if sources->absorbed is
- * set. What contacts and a film of the wall bring is spread by area. convected_energy adds up to -gas_energy if no wall
- * has a film. Both sums are right to rounding.
+ * side_energy of the sides of a wall adds up to its wall_energy, and to the light that it absorbs if sources->absorbed
+ * is set. What contacts and a film of the wall bring is spread by area. convected_energy adds up to -gas_energy if no
+ * wall has a film. Both sums are right to rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
  * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own, no
