@@ -139,6 +139,7 @@ typedef struct fibrad_stream {
  * each patch:
  *   a sphere with a finite conductivity  is hotter at the lit patches
  *   an insulated wall                    sends the light out as thermal radiation, at the same patch; it has no power
+ *   a side with a film or a power        gives the light off as well
  *   any other sphere or wall             does not use `absorbed`
  *
  * Contact k conducts heat between contact_first[k] and contact_second[k]: each is an index of a sphere, or `spheres`
@@ -176,9 +177,10 @@ typedef struct fibrad_stream {
  *
  *     eps (H - sigma T^4) + side_film (side_gas - T) + side_power = 0.
  *
- * side_film is a heat transfer coefficient. It and side_power are per area of the side. The side has no
- * side_temperature. Its wall has a given temperature, with which the search begins, and an emissivity above 0. The net
- * power of side and wall is what they gain by radiation. A side that absorbs light (`absorbed`) gains this, too. */
+ * side_film is a heat transfer coefficient. It and side_power are per area of the side. A side of power 0 sends out all
+ * that it takes in. The side has no side_temperature. Its wall has a given temperature, with which the search begins,
+ * and an emissivity above 0. The net power of side and wall is what they gain by radiation. A side that absorbs light
+ * (`absorbed`) gives it off, too. If only a temperature below 0 would balance a side, there is no solution. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */

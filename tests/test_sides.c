@@ -287,6 +287,30 @@ TEST(a_cube_of_films) {
     }
 }
 
+/* A solution that begins with that of other patches, or of other films, is that of a new bed. */
+TEST(later_solutions) {
+    OWNED_ROOM *room = room_new(2, false);
+    OWNED struct room *first = malloc(sizeof *first);
+    const uint32_t n = room->mesh->triangles.n;
+    const fibrad_heat_config few = {.patches = 24, .directions = 100};
+    fill(room);
+    make_bed(room, 1, false);
+    solve(room);
+    assert_ok(fibrad_bed_beams(room->bed, &few));
+    for (int round = 0; round < 3; ++round) {
+        for (uint32_t t = 0; t < n; ++t) room->side_gas[2 * t] += 200 * round;
+        if (round == 2) give_found(room);
+        solve(room);
+        memcpy(first, room, sizeof *first);
+        make_bed(room, 1, false);
+        assert_ok(fibrad_bed_beams(room->bed, &few));
+        solve(room);
+        ck_assert_double_lt(largest(room->flux, first->flux, n, 2), 1e-7);
+        ck_assert_double_lt(largest(room->found, first->found, SPHERES, 1), 1e-8);
+        ck_assert_double_lt(largest(room->side_found, first->side_found, n, 2), 1e-8);
+    }
+}
+
 /* Numbers of threads change no bit; the order of the triangles changes rounding, and which rays are sent. */
 TEST(threads_and_the_order_of_triangles) {
     OWNED_ROOM *room = room_new(3, true);

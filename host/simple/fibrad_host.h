@@ -342,11 +342,15 @@ typedef struct fibrad_store {
  *
  * With `store` the field `capacity` has masses in kg. From one span to the next `melted` then keeps the fraction of
  * each sphere that has melted. A sphere of infinite capacity is held: its temperature stays. held_energy is what held
- * spheres gain, their powers included. side_energy of a wall's sides adds up to its wall_energy, and convected_energy
- * to -gas_energy less what walls gain by films, all to rounding.
+ * spheres gain, their powers included.
+ *
+ * side_energy of the sides of a wall adds up to its wall_energy, and to the light that it absorbs if sources->absorbed
+ * is set. What contacts and a film of the wall bring is spread by area. convected_energy adds up to -gas_energy if no
+ * wall has a film. Both sums are right to rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
- * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own. */
+ * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own, no
+ * films and no powers. */
 typedef struct fibrad_span {
     double *temperature;    /* K, [spheres], above 0 to FIBRAD_TEMPERATURE_MAX; in: at the beginning; out: at the end */
     const double *capacity; /* J/K, or kg with `store`, [spheres], above 0 to FIBRAD_CAPACITY_MAX, or infinity */

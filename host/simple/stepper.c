@@ -86,9 +86,10 @@ static double area_of_triangle(const fibrad_triangles *mesh, size_t t) {
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
-/* The same of what may be missing at the beginning. */
-static double value_between(const double *from, const double *to, size_t k, double share) {
-    return from && !isnan(from[k]) ? share_between(from[k], to[k], share) : to[k];
+/* Sets values of sides at a share of the span. One that is missing at the beginning is constant. */
+static void set_sides(const struct stepper *m, double *now, const double *from, const double *to, double share) {
+    for (size_t k = 0; to && k < m->sides; ++k)
+        now[k] = from && !isnan(from[k]) ? share_between(from[k], to[k], share) : to[k];
 }
 
 /* Sets the temperatures of walls, sides, surroundings and gas at a time since the beginning of the span. */
@@ -105,10 +106,8 @@ static void set_outside(struct stepper *m, double time) {
     for (uint32_t b = 0; m->given->wall_gas && b < m->bed->facts.walls; ++b)
         m->t->wall_gas[b] =
             span->wall_gas ? share_between(m->given->wall_gas[b], span->wall_gas[b], share) : m->given->wall_gas[b];
-    for (size_t k = 0; span->side_temperature && k < m->sides; ++k)
-        m->side_temperature[k] = value_between(m->given->side_temperature, span->side_temperature, k, share);
-    for (size_t k = 0; span->side_gas && k < m->sides; ++k)
-        m->side_gas[k] = value_between(m->given->side_gas, span->side_gas, k, share);
+    set_sides(m, m->side_temperature, m->given->side_temperature, span->side_temperature, share);
+    set_sides(m, m->side_gas, m->given->side_gas, span->side_gas, share);
     if (span->inlet) m->stream.inlet = share_between(m->given->stream->inlet, *span->inlet, share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;

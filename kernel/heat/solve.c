@@ -369,12 +369,11 @@ static void heat_by_light(fibrad_heat *heat) {
 #define BALANCED 1e-9
 static bool solvable(fibrad_heat *heat) {
     double sum = 0, sizes = 0;
-    bool held = heat->contacts.joins && heat->contacts.anchored, radiates = false, levelled = heat->contacts.joins;
+    const bool sides = heat->sources.sides && heat->solution.group == 1;
+    bool held = (heat->contacts.joins && heat->contacts.anchored) || (sides && heat->sources.held), radiates = sides;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        const bool sides = fibrad_heat_finds_sides(heat, b);
-        held = held || (sides ? heat->sources.held : emitting(heat, b) > 0);
-        levelled = levelled || sides;
-        radiates = radiates || sides || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
+        held = held || (emitting(heat, b) > 0 && !fibrad_heat_finds_sides(heat, b));
+        radiates = radiates || (fibrad_heat_is_free(heat, b) && heat->sources.emissivity[b] > 0);
         if (heat->sources.storage[b] == 0)
             sum += heat->sources.given_power[b], sizes += fibrad_abs(heat->sources.given_power[b]);
         double light = 0;
@@ -382,7 +381,7 @@ static bool solvable(fibrad_heat *heat) {
         sum += light, sizes += light;
     }
     heat->sources.free_level = !held;
-    if (levelled) return held || !radiates;
+    if (heat->contacts.joins || sides) return held || !radiates;
     return held || fibrad_abs(sum) <= BALANCED * sizes;
 }
 
