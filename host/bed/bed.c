@@ -56,6 +56,12 @@ double bed_reach(const struct bed *bed, int axis, bool upper) {
     return end;
 }
 
+double bed_diameter(const struct bed *bed) {
+    double mean = 0;
+    for (uint32_t i = 0; i < bed->n; ++i) mean += 2 * bed->r[i] / bed->n;
+    return mean;
+}
+
 int bed_keep(struct bed *bed, const char *const *text, size_t n) {
     size_t room = 1;
     for (size_t k = 0; k < n; ++k) room += strlen(text[k]) + 4; /* a blank, or `nan` for an empty field */

@@ -58,6 +58,9 @@ double bed_wall_end(const struct bed *bed, int axis, bool upper, bool *moved);
 /* The least or largest coordinate of the spheres of a bed along an axis. */
 double bed_reach(const struct bed *bed, int axis, bool upper);
 
+/* The mean diameter of the spheres of a bed. */
+double bed_diameter(const struct bed *bed);
+
 /* The name of a sphere: its id, or its position from 0. */
 int64_t bed_name(const struct bed *bed, uint32_t i);
 

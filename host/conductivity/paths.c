@@ -11,6 +11,7 @@
 #include "cli/message.h"
 #include "cli/progress.h"
 #include "simple/team.h"
+#include "text/read_number.h"
 
 #define PI 3.14159265358979323846
 
@@ -123,11 +124,6 @@ struct extent {
     double low, high;
 };
 
-static int compare_extents(const void *a, const void *b) {
-    const double x = ((const struct extent *)a)->low, y = ((const struct extent *)b)->low;
-    return (x > y) - (x < y);
-}
-
 /* Sum of squared widths of all gaps across a periodic axis. A gap is a slab without spheres. */
 static double square_gaps(const struct bed *bed, int axis, struct extent *extents) {
     const double *at = bed_centres(bed, axis), period = bed->period[axis];
@@ -137,7 +133,7 @@ static double square_gaps(const struct bed *bed, int axis, struct extent *extent
         extents[i] = (struct extent){inside, inside + 2 * bed->r[i]};
         reach = fmax(reach, extents[i].high - period);
     }
-    qsort(extents, bed->n, sizeof *extents, compare_extents);
+    qsort(extents, bed->n, sizeof *extents, number_order);
     for (uint32_t i = 0; i < bed->n; ++i) {
         if (extents[i].low > reach) sum += pow(extents[i].low - reach, 2);
         reach = fmax(reach, extents[i].high);
@@ -166,7 +162,7 @@ int conduction_emitters(const struct bed *bed, const struct walls *walls, int ax
     struct core core;
     double solid = 0, emitting = 0;
     *result = (struct conduction){.temperature = NAN};
-    for (uint32_t i = 0; i < bed->n; ++i) result->diameter += 2 * bed->r[i] / bed->n;
+    result->diameter = bed_diameter(bed);
     const int status = find_core(bed, walls, axis, margin, file, result->diameter, &core);
     if (status) return status;
     for (uint32_t i = 0; i < bed->n; ++i) {

@@ -201,7 +201,7 @@ int plates_conduct(const struct plates *plates, const struct plates_problem *pro
     struct conduction_plates rough = {.spheres = 0};
     const double begun = progress_clock();
     *result = (struct conduction_plates){.touches = problem->touches};
-    for (uint32_t i = 0; i < plates->bed.n; ++i) b.diameter += 2 * plates->bed.r[i] / plates->bed.n;
+    b.diameter = bed_diameter(&plates->bed);
     int status = take_room(&b);
     if (!status) set_up(&b);
     if (!status && b.contacts > 0) status = solve_all(&b, DIRECTIONS_CONTACTS, result);

@@ -6,6 +6,7 @@
 
 #include "cli/message.h"
 #include "heat/time_run.h"
+#include "text/read_number.h"
 
 enum { TIMES_MAX = 10000 };
 
@@ -106,11 +107,6 @@ struct span_end {
     bool output; /* a time of output */
 };
 
-static int by_time(const void *a, const void *b) {
-    const double x = ((const struct span_end *)a)->time, y = ((const struct span_end *)b)->time;
-    return (x > y) - (x < y);
-}
-
 /* Finds the ends of all spans in ascending order. */
 static int find_times(const struct heat *h, struct span_end **ends, size_t *count) {
     const struct time_options *o = &h->time;
@@ -137,7 +133,7 @@ static int find_times(const struct heat *h, struct span_end **ends, size_t *coun
         for (size_t p = 0; p < curve->n; ++p)
             if (curve->x[p] > 0 && curve->x[p] < o->until) end[n++] = (struct span_end){curve->x[p], false};
     }
-    qsort(end, n, sizeof *end, by_time);
+    qsort(end, n, sizeof *end, number_order);
     *count = 0;
     for (size_t k = 0; k < n; ++k)
         if (*count > 0 && end[k].time == end[*count - 1].time)

@@ -61,12 +61,9 @@ struct bins {
  * mean diameter wide, and the last one may reach beyond the spheres. Status 0 or STATUS_MEMORY. */
 static int make_bins(const struct heat *h, struct bins *bins) {
     const double most = 1e6;
-    double low = h->around ? 0 : INFINITY, high = -INFINITY, diameter = 0;
-    for (uint32_t i = 0; i < h->bed->n; ++i) {
-        const double at = place_of(h, i), r = h->bed->r[i];
-        low = h->around ? 0 : fmin(low, at - r), high = fmax(high, at + r);
-        diameter += 2 * r / h->bed->n;
-    }
+    const double diameter = bed_diameter(h->bed);
+    double low = h->around ? 0 : bed_reach(h->bed, h->profile.axis - 'x', false), high = -INFINITY;
+    for (uint32_t i = 0; i < h->bed->n; ++i) high = fmax(high, place_of(h, i) + h->bed->r[i]);
     const uint32_t given = h->profile.bins;
     bins->count = given ? given : (uint32_t)fmin(ceil((high - low) / diameter * (1 - 1e-9)), most);
     bins->width = given ? (high - low) / given : fmax(diameter, (high - low) / most);

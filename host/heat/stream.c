@@ -41,19 +41,10 @@ int stream_check(const struct film_options *o) {
     return STATUS_OK;
 }
 
-/* The ends of all spheres along an axis. */
-static void find_ends(const struct bed *bed, int axis, double end[2]) {
-    const double *at = bed_centres(bed, axis);
-    end[0] = INFINITY, end[1] = -INFINITY;
-    for (uint32_t i = 0; i < bed->n; ++i)
-        end[0] = fmin(end[0], at[i] - bed->r[i]), end[1] = fmax(end[1], at[i] + bed->r[i]);
-}
-
 /* The width of the cross-section along an axis beside the flow: between walls, else of the period or the spheres. */
 static double width_of(const struct heat *h, int axis) {
-    double end[2];
+    double end[2] = {bed_reach(h->bed, axis, false), bed_reach(h->bed, axis, true)};
     if (h->bed->period[axis] > 0) return h->bed->period[axis];
-    find_ends(h->bed, axis, end);
     for (uint32_t k = 0; k < h->walls.count; ++k)
         if (h->walls.wall[k].kind == FIBRAD_WALL_PLANE && h->walls.wall[k].plane.axis == axis)
             end[h->walls.wall[k].plane.upper != 0] = h->walls.wall[k].plane.at;
@@ -86,12 +77,14 @@ static int refuse_closed(const struct heat *h) {
 }
 
 /* Cuts the bed into slices of one mean diameter, and assigns each sphere to the slice of its centre. */
-static void cut_slices(struct heat *h, uint32_t *slice, double length, double diameter, const double end[2]) {
+static void cut_slices(struct heat *h, uint32_t *slice) {
     const struct bed *bed = h->bed;
     const double *at = bed_centres(bed, h->film.axis);
-    const uint32_t slices = (uint32_t)fmax(1, fmin(SLICES_MAX, round(length / diameter)));
+    const double low = bed_reach(bed, h->film.axis, false), high = bed_reach(bed, h->film.axis, true);
+    const double length = high - low;
+    const uint32_t slices = (uint32_t)fmax(1, fmin(SLICES_MAX, round(length / bed_diameter(bed))));
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double way = h->film.down ? end[1] - at[i] : at[i] - end[0];
+        const double way = h->film.down ? high - at[i] : at[i] - low;
         slice[i] = (uint32_t)fmax(0, fmin(slices - 1.0, floor(way / length * slices)));
     }
     h->films.stream.slice = slice, h->films.stream.slices = slices;
@@ -100,16 +93,12 @@ static void cut_slices(struct heat *h, uint32_t *slice, double length, double di
 int stream_begin(struct heat *h) {
     const struct film_options *o = &h->film;
     struct film_state *films = &h->films;
-    const struct bed *bed = h->bed;
     const uint32_t points = o->capacity_curve.n > 0 ? (uint32_t)o->capacity_curve.n : 1;
-    double end[2], diameter = 0;
     if (!(o->flux > 0)) return STATUS_OK;
     const int status = refuse_closed(h);
     if (status) return status;
-    find_ends(bed, o->axis, end);
-    for (uint32_t i = 0; i < bed->n; ++i) diameter += 2 * bed->r[i] / bed->n;
-    uint32_t *slice = malloc((bed->n + (size_t)1) * sizeof *slice);
-    if (slice) cut_slices(h, slice, end[1] - end[0], diameter, end);
+    uint32_t *slice = malloc((h->bed->n + (size_t)1) * sizeof *slice);
+    if (slice) cut_slices(h, slice);
     films->memory = calloc(2 * (size_t)points + FIBRAD_STREAM_ROWS * (size_t)films->stream.slices, sizeof(double));
     if (!slice || !films->memory) return message_memory();
     double *at = films->memory, *capacity = at + points;
@@ -128,10 +117,10 @@ int stream_begin(struct heat *h) {
 
 /* The fraction of the bed that is void: cross-section times length less the volumes of the spheres. */
 static double void_fraction(const struct heat *h) {
-    double end[2], solid = 0;
-    find_ends(h->bed, h->film.axis, end);
+    const double length = bed_reach(h->bed, h->film.axis, true) - bed_reach(h->bed, h->film.axis, false);
+    double solid = 0;
     for (uint32_t i = 0; i < h->bed->n; ++i) solid += heat_volume(h, i);
-    return 1 - solid / (h->films.section * (end[1] - end[0]) * h->bed->metres);
+    return 1 - solid / (h->films.section * length * h->bed->metres);
 }
 
 /* Nusselt numbers of spheres in a bed, with the Reynolds number of the diameter and the superficial velocity.

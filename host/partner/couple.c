@@ -17,20 +17,16 @@ enum { REPEATED_STEPS = 4 };
 struct coupling {
     struct time_run run;
     struct exchange *exchange;
-    double *side[6],
-        *saved;            /* of the library: [2 triangles] each; temperatures and melted fractions at the beginning */
-    double *gas_begun;     /* [spheres] [K] */
-    double every, written; /* [s] from one output to the next; time of the last one */
-    double faces_energy;   /* [J] gained by faces since the beginning */
-    uint64_t windows, iterations, tries; /* tries: of the window in hand */
+    double *side[6];         /* [2 triangles] each, as the library has them */
+    double *saved;           /* [2 spheres] temperatures and melted fractions at the beginning of the window */
+    double *gas_begun;       /* [spheres] [K] */
+    double every, written;   /* [s] from one output to the next; time of the last one */
+    uint64_t windows, tries; /* tries: of the window in hand */
+    size_t points;           /* of the picture, at its beginning */
 };
 enum { SIDE_BEGUN, SIDE_END, SIDE_FILM, BEHIND_BEGUN, BEHIND_END, SIDE_ENERGY };
 
 /* ---- faces and particles ----------------------------------------------------------------------------------------- */
-
-static bool is_wall_side(const struct meshes *meshes, uint32_t triangle, uint32_t wall) {
-    return meshes->front[triangle] == wall || meshes->back[triangle] == wall;
-}
 
 /* Chooses the walls by their names. */
 static int choose_walls(struct exchange *e) {
@@ -79,7 +75,7 @@ static int make_faces(struct heat *h, struct exchange *e) {
     for (uint32_t k = 0; k < h->walls.count; ++k) {
         f->first[k] = f->n;
         for (uint32_t t = 0; t < triangles && e->exchanged[k]; ++t) {
-            if (!is_wall_side(meshes, t, k)) continue;
+            if (meshes->front[t] != k && meshes->back[t] != k) continue;
             const struct mesh *mesh = mesh_of_triangle(meshes, t);
             const uint32_t own = t - mesh->first;
             for (int c = 0; c < 3; ++c)
@@ -207,23 +203,22 @@ static void keep_state(struct coupling *c, bool back) {
     for (size_t a = 0; a < 2; ++a)
         if (state[a])
             memcpy(back ? state[a] : c->saved + a * n, back ? c->saved + a * n : state[a], n * sizeof **state);
+    *(back ? &c->run.points : &c->points) = back ? c->points : c->run.points;
 }
 
 static int try_window(struct coupling *c) {
     struct time_run *m = &c->run;
     struct exchange *e = c->exchange;
-    const size_t points = m->points;
     if (c->tries == 0) keep_state(c, false);
     if (c->tries == 1) {
         const double steps = fmin((double)m->span.steps, REPEATED_STEPS);
         m->span.step = m->heat->time.step > 0 ? m->heat->time.step : e->length / steps;
         m->sources.tolerance = REPEATED_RESIDUAL;
     }
-    ++c->tries, ++c->iterations;
+    ++c->tries;
     set_given(c);
     const int status = time_try(m, m->now + e->length);
     take_found(c);
-    if (e->implicit) m->points = points;
     return status;
 }
 
@@ -241,7 +236,6 @@ static void end_window(struct coupling *c) {
     if (c->exchange->gives_gas) memcpy(c->gas_begun, h->films.end, h->bed->n * sizeof *c->gas_begun);
     for (uint32_t k = 0; k < c->exchange->faces.n; ++k) faces += c->exchange->faces.energy[k];
     for (uint32_t i = 0; i < h->bed->n; ++i) stored += m->stored[i];
-    c->faces_energy += faces;
     report_begin(report);
     report_count(report, "window", c->windows++);
     report_value(report, "time_s", m->now, 9);

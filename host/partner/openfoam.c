@@ -225,11 +225,6 @@ struct along {
 
 static double along_of(const double p[3]) { return 0.36 * p[0] + 0.48 * p[1] + 0.8 * p[2]; }
 
-static int compare_along(const void *a, const void *b) {
-    const double x = ((const struct along *)a)->at, y = ((const struct along *)b)->at;
-    return (x > y) - (x < y);
-}
-
 /* Finds the face with the nearest centre for each triangle, no farther than the size of that face. */
 static int find_nearest_faces(const struct exchange_faces *faces, struct openfoam *foam) {
     double largest = 0;
@@ -240,7 +235,7 @@ static int find_nearest_faces(const struct exchange_faces *faces, struct openfoa
         sorted[k] = (struct along){along_of(foam->face[k].centre), k};
         largest = fmax(largest, foam->face[k].size);
     }
-    qsort(sorted, (size_t)foam->n, sizeof *sorted, compare_along);
+    qsort(sorted, (size_t)foam->n, sizeof *sorted, number_order);
     for (uint32_t t = 0; t < faces->n; ++t) {
         const double at = along_of(faces->centre[t]);
         double least = largest;

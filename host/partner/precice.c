@@ -54,16 +54,7 @@ static const char *const symbols[] = {"getVersionInformation",
                                       "writeData"};
 enum { SYMBOLS = sizeof symbols / sizeof *symbols };
 
-enum quantity_kind {
-    KIND_TEMPERATURE,
-    KIND_SINK,
-    KIND_FILM,
-    KIND_POWER,
-    KIND_FLUX,
-    KIND_CONDUCTANCE,
-    KIND_SOURCE,
-    KINDS
-};
+enum { KIND_TEMPERATURE, KIND_SINK, KIND_FILM, KIND_POWER, KIND_FLUX, KIND_CONDUCTANCE, KIND_SOURCE, KINDS };
 static const char *const kinds[KINDS] = {
     "Temperature", "Sink-Temperature", "Heat-Transfer-Coefficient", "Power", "Heat-Flux", "Conductance", "Source"};
 
@@ -82,7 +73,7 @@ struct precice {
     void *handle;
     int *id;       /* [faces, then particles] of vertices */
     double *value; /* [the same] */
-    bool created, failed;
+    bool created;
 };
 
 /* ---- the configuration ------------------------------------------------------------------------------------------- */
@@ -235,7 +226,7 @@ static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     const int signal = sigsetjmp(stopped, 1);
     int status = STATUS_OK;
     if (signal == 0) {
-        alarm(e->timeout > 0 ? (unsigned)(e->timeout + 1) : 0);
+        alarm(e->timeout > 0 ? (unsigned)fmin(e->timeout + 1, INT32_MAX) : 0);
         status = call(e);
     }
     alarm(0);
@@ -246,7 +237,6 @@ static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     if (interrupt_status()) return interrupt_status();
     if (signal == SIGABRT) status = message(STATUS_FILE, "preCICE has ended with an error, which it has printed");
     if (signal == SIGALRM) status = message(STATUS_FILE, "no word from preCICE in %g s (--timeout)", e->timeout);
-    if (signal) ((struct precice *)e->state)->failed = true;
     return status;
 }
 
@@ -299,8 +289,8 @@ static int read_item(struct exchange *e, const struct item *item) {
 
 static int connect_now(struct exchange *e) {
     struct precice *p = e->state;
-    p->library.create(e->participant, e->file, 0, 1);
     p->created = true;
+    p->library.create(e->participant, e->file, 0, 1);
     for (const struct item *item = p->item; item < p->item + p->items; ++item) {
         uint32_t n;
         const uint32_t first = first_of(e, item, &n);
@@ -378,12 +368,13 @@ static int precice_give(struct exchange *e, bool *again) {
     return status;
 }
 
-/* After an error of preCICE its destructors, which run at the end of the program, would fail. */
+/* After an error the destructors of preCICE, which run at the end of the program, would fail, or wait for the partner.
+ */
 static int precice_end(struct exchange *e, int status) {
     struct precice *p = e->state;
     if (!p) return status;
-    if (p->created && !p->failed && !status) status = guarded(e, finish_now);
-    if (p->failed) {
+    if (p->created && !status) status = guarded(e, finish_now);
+    if (p->created && status) {
         fflush(stdout);
         _exit(status);
     }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "text/read_number.h"
 
 /* Distance of two centres, or of their nearest images in a periodic bed. i = j: distance of a sphere from its nearest
  * image. */
@@ -51,11 +52,6 @@ static void count_pairs(struct plot_data *data, const struct contents *what) {
     }
 }
 
-static int ascending_sums(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* Finds sums of factors within each distance for a selection of rows, sums[distance][row]. Returns the number of rows.
  */
 static uint32_t add_distances(const struct plot_data *data, const struct contents *what, double (*sums)[PLOT_ROWS]) {
@@ -81,13 +77,13 @@ static uint32_t add_distances(const struct plot_data *data, const struct content
 int plot_data_collect(struct plot_data *data, const struct contents *what) {
     memset(data, 0, sizeof *data);
     const struct bed *bed = what->bed;
-    for (uint32_t i = 0; i < bed->n; ++i) data->diameter += 2 * bed->r[i] / bed->n;
+    data->diameter = bed_diameter(bed);
     count_pairs(data, what);
     double(*sums)[PLOT_ROWS] = calloc(PLOT_DISTANCES + 1, sizeof *sums);
     if (!sums) return message_memory();
     const uint32_t taken = add_distances(data, what, sums);
     for (int d = 0; d <= PLOT_DISTANCES && taken > 0; ++d) {
-        qsort(sums[d], taken, sizeof *sums[d], ascending_sums);
+        qsort(sums[d], taken, sizeof *sums[d], number_order);
         for (int q = 0; q < 3; ++q) data->within[d][q] = sums[d][(taken - 1) * (uint32_t)(1 + 4 * q) / 10];
     }
     free(sums);

@@ -81,3 +81,8 @@ bool number_read_whole(const char *text, int64_t *value) {
     *value = (int64_t)real;
     return true;
 }
+
+int number_order(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}

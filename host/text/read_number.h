@@ -13,4 +13,7 @@ bool number_read(const char *text, double *value);
  * 2^53. False: the text is no whole number, or the number is beyond 63 bits. */
 bool number_read_whole(const char *text, int64_t *value);
 
+/* Orders numbers for qsort, or structures that begin with one: doubles, the least first. */
+int number_order(const void *a, const void *b);
+
 #endif
