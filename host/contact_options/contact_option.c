@@ -164,8 +164,8 @@ void contacts_excess(struct contact_state *state, const struct bed *bed, const d
 }
 
 void contacts_warn(struct warned *warned, const struct table_excess excess[2]) {
-    warn_table(warned, "--contact-conductivity", &excess[0]);
-    warn_table(warned, "--gas-conductivity", &excess[1]);
+    warn_table(warned, CONTACT_TABLE, &excess[0]);
+    warn_table(warned, GAS_TABLE, &excess[1]);
 }
 
 void contacts_follow(struct contact_state *state, const struct bed *bed, const double *temperature,

@@ -33,7 +33,7 @@ int solid_relative(struct bed_options *options, const struct bed *bed, const str
     if (!status) {
         quantity_follow(solid, bed, temperature, conductivity);
         quantity_excess(solid, bed, temperature, &excess);
-        warn_table(&options->warned, "--solid-conductivity", &excess);
+        warn_table(&options->warned, SOLID_TABLE, &excess);
     }
     for (uint32_t i = 0; i < bed->n && !status; ++i) {
         relative[i] = fibrad_relative_conductivity(conductivity[i], bed->r[i] * bed->metres, temperature[i],

@@ -16,15 +16,12 @@ enum kind {
     CELSIUS,
     HEAT_CAPACITY,
     DENSITY,
-    EMISSIVITY_TABLE,
-    SOLID_TABLE,
-    CONTACT_TABLE,
-    GAS_TABLE,
     CLOSED_BED,
     WAVES,
     JOINED_WALL,
     HOT,
-    OF_THE_LIBRARY /* and then a fibrad_warning_code */
+    OF_TABLES,                             /* and then an enum warned_table */
+    OF_THE_LIBRARY = OF_TABLES + GAS_TABLE /* and then a fibrad_warning_code, from 1 on */
 };
 
 #define RADIUS_LARGE 0.1      /* [m] particles hardly have a larger mean radius */
@@ -176,15 +173,10 @@ void warn_periods(struct warned *warned, const struct bed *bed, const double per
     }
 }
 
-static double mean_radius(const struct bed *bed) {
-    double sum = 0;
-    for (uint32_t i = 0; i < bed->n; ++i) sum += bed->r[i];
-    return sum / bed->n;
-}
-
 void warn_unit(struct warned *warned, const struct bed *bed) {
-    if (mean_radius(bed) > RADIUS_LARGE && is_new(warned, OTHER_UNIT))
-        WARN(0, "radii of %g are taken as metres; --length-unit m, or mm for example, says the unit", mean_radius(bed));
+    const double radius = bed_diameter(bed) / 2;
+    if (radius > RADIUS_LARGE && is_new(warned, OTHER_UNIT))
+        WARN(0, "radii of %g are taken as metres; --length-unit m, or mm for example, says the unit", radius);
 }
 
 void warn_waves(struct warned *warned, const struct bed *bed, double hottest) {
@@ -240,19 +232,13 @@ void warn_matter(struct warned *warned, const struct bed *bed, const double *cap
         WARN(bed->line[rho], "the density is %g kg/m3; solids have some 100 to 20,000", density[rho]);
 }
 
-void warn_table(struct warned *warned, const char *option, const struct table_excess *excess) {
-    static const struct {
-        const char *option, *what;
-        enum kind kind;
-    } tables[] = {{"--emissivity", "sphere", EMISSIVITY_TABLE},
-                  {"--solid-conductivity", "sphere", SOLID_TABLE},
-                  {"--contact-conductivity", "sphere", CONTACT_TABLE},
-                  {"--gas-conductivity", "contact", GAS_TABLE}};
-    size_t k = 0;
-    while (strcmp(option, tables[k].option) != 0) ++k;
-    if (excess->number > 0 && is_new(warned, tables[k].kind))
-        WARN(0, "%s: %u %s%s beyond the table, by up to %.3g K; the value at its end is taken", option, excess->number,
-             tables[k].what, excess->number == 1 ? " has a temperature" : "s have temperatures", excess->kelvins);
+void warn_table(struct warned *warned, enum warned_table table, const struct table_excess *excess) {
+    static const char *const option[] = {"emissivity", "solid-conductivity", "contact-conductivity",
+                                         "gas-conductivity"};
+    if (excess->number > 0 && is_new(warned, (enum kind)(OF_TABLES + table)))
+        WARN(0, "--%s: %u %s%s beyond the table, by up to %.3g K; the value at its end is taken", option[table],
+             excess->number, table == GAS_TABLE ? "contact" : "sphere",
+             excess->number == 1 ? " has a temperature" : "s have temperatures", excess->kelvins);
 }
 
 void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until) {

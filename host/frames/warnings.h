@@ -58,7 +58,8 @@ void warn_closed(struct warned *warned);
 void warn_matter(struct warned *warned, const struct bed *bed, const double *capacity, const double *density);
 
 /* Warns if spheres lie beyond the ends of the tables of an option, where values do not change. */
-void warn_table(struct warned *warned, const char *option, const struct table_excess *excess);
+enum warned_table { EMISSIVITY_TABLE, SOLID_TABLE, CONTACT_TABLE, GAS_TABLE };
+void warn_table(struct warned *warned, enum warned_table table, const struct table_excess *excess);
 
 /* Warns if a table over times does not reach from 0 to `until` [s]. what: whose table. */
 void warn_times(struct warned *warned, const char *what, const struct curve *curve, double until);

@@ -51,19 +51,13 @@ static void add_member(struct heat *h, uint32_t i, bool found, double *area) {
 int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) {
     enum { ARRAYS = 8 };
     struct clump_state *state = &h->clumps;
-    fibrad_heat_result *result = &state->result;
+    fibrad_heat_result *to = &state->result;
     double *area, *melted,
-        **const of_bodies[ARRAYS] = {&area,
-                                     &melted,
-                                     &result->temperature,
-                                     &result->temperature_error,
-                                     &result->power,
-                                     &result->power_error,
-                                     &result->conducted,
-                                     &result->convected};
+        **const of_bodies[ARRAYS] = {&area,          &to->conducted,   &to->temperature, &melted,
+                                     &to->convected, &to->power_error, &to->power,       &to->temperature_error};
     if (!h->bed->clump) return STATUS_OK;
     free(state->metres);
-    *result = h->result;
+    *to = h->result;
     state->metres = calloc(h->bed->n + ARRAYS * (size_t)state->n + 1, sizeof *state->metres);
     if (!state->metres) return message_memory();
     for (size_t k = 0; k < ARRAYS; ++k) *of_bodies[k] = state->metres + h->bed->n + k * state->n;
@@ -72,12 +66,12 @@ int clumps_result(struct heat *h, const struct bed *bed, struct contents *what) 
         add_member(h, i, isnan(what->sources->temperature[i]), area);
         if (what->melted) melted[state->body[i]] = what->melted[i]; /* all members are equally melted */
     }
-    if (!h->result.conducted) result->conducted = NULL;
-    if (!h->result.convected) result->convected = NULL;
+    if (!h->result.conducted) to->conducted = NULL;
+    if (!h->result.convected) to->convected = NULL;
     what->area = state->metres;
     if (h->members) return STATUS_OK;
     bed_free(&state->bodies);
-    what->bodies = &state->bodies, what->of_bodies = result, what->area_of_bodies = area;
+    what->bodies = &state->bodies, what->of_bodies = to, what->area_of_bodies = area;
     what->melted_of_bodies = what->melted ? melted : NULL;
     const int status = bed_bodies(bed, state->n, state->body, area, &state->bodies);
     state->bodies.frame = bed->frame, state->bodies.timestep = bed->timestep;

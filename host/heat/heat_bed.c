@@ -10,22 +10,16 @@
 /* Allocates the arrays of the result, those of spheres in one block. The last INSIDE are of spheres that conduct. */
 static int make_arrays(struct heat *h) {
     enum { ARRAYS = 9, INSIDE = 5 };
-    fibrad_heat_result *result = &h->result;
-    double **const of_spheres[ARRAYS] = {&result->power,
-                                         &result->temperature,
-                                         &result->power_error,
-                                         &result->temperature_error,
-                                         &result->least_temperature,
-                                         &result->largest_temperature,
-                                         &result->centre_temperature,
-                                         &result->surface_error,
-                                         &result->centre_error};
+    fibrad_heat_result *r = &h->result;
+    double **const of_spheres[ARRAYS] = {&r->power,         &r->temperature_error,   &r->power_error,
+                                         &r->temperature,   &r->least_temperature,   &r->centre_temperature,
+                                         &r->surface_error, &r->largest_temperature, &r->centre_error};
     double *block = calloc(ARRAYS * (size_t)h->bed->n + 1, sizeof *block);
     for (size_t k = 0; block && k < (h->solid.given ? ARRAYS : ARRAYS - INSIDE); ++k)
         *of_spheres[k] = block + k * h->bed->n;
-    result->wall_power = h->of_walls[0], result->wall_temperature = h->of_walls[1];
-    result->wall_error = h->of_walls[2], result->wall_temperature_error = h->of_walls[3];
-    result->wall_absorbed = h->of_walls[4], result->wall_area = h->of_walls[5];
+    r->wall_power = h->of_walls[0], r->wall_temperature = h->of_walls[1];
+    r->wall_error = h->of_walls[2], r->wall_temperature_error = h->of_walls[3];
+    r->wall_absorbed = h->of_walls[4], r->wall_area = h->of_walls[5];
     return block ? STATUS_OK : message_memory();
 }
 
@@ -169,8 +163,8 @@ void heat_excess_of(struct heat *h, const double *temperature, const double *wal
 }
 
 void heat_warn_excess(struct heat *h, const struct table_excess excess[TABLES]) {
-    warn_table(&h->options.warned, "--emissivity", &excess[0]);
-    warn_table(&h->options.warned, "--solid-conductivity", &excess[1]);
+    warn_table(&h->options.warned, EMISSIVITY_TABLE, &excess[0]);
+    warn_table(&h->options.warned, SOLID_TABLE, &excess[1]);
     contacts_warn(&h->options.warned, &excess[2]);
 }
 

@@ -457,16 +457,9 @@ static int begin_span(struct time_run *m) {
     memcpy(now, h->sources.temperature, n * sizeof *now);
     m->sources.temperature = now, m->sources.wall_temperature = m->wall;
     m->stored = now + n, m->gained = m->stored + n;
-    m->span = (fibrad_span){.temperature = now,
-                            .wall_temperature = m->wall_next,
-                            .wall_end = m->wall_end,
-                            .surroundings = &m->surroundings_next,
-                            .step = h->time.step,
-                            .stored = m->stored,
-                            .observe = note_point,
-                            .wall_energy = m->wall_energy,
-                            .wall_capacity = m->wall_capacity,
-                            .context = m};
+    m->span = (fibrad_span){.temperature = now, .stored = m->stored, .observe = note_point, .context = m};
+    m->span.wall_temperature = m->wall_next, m->span.surroundings = &m->surroundings_next, m->span.step = h->time.step;
+    m->span.wall_end = m->wall_end, m->span.wall_energy = m->wall_energy, m->span.wall_capacity = m->wall_capacity;
     if (h->film.gas_curve.n > 0) {
         m->span.gas = h->films.film && !h->sources.stream ? h->films.end : NULL;
         m->span.wall_gas = h->films.wall_end;

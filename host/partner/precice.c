@@ -23,35 +23,26 @@ enum { NAME = 128, ITEMS = 64, PARTICLES = WALLS_MAX };
 
 /* Functions of libprecice, in the order of their names below. */
 struct library {
-    const char *(*version)(void);
-    void (*create)(const char *participant, const char *file, int rank, int ranks);
-    void (*vertices)(const char *mesh, int n, const double *at, int *id);
     void (*initialize)(void);
+    void (*create)(const char *participant, const char *file, int rank, int ranks);
+    const char *(*version)(void);
     void (*advance)(double length);
+    void (*vertices)(const char *mesh, int n, const double *at, int *id);
+    int (*wants_initial)(void);
     void (*finalize)(void);
     int (*ongoing)(void);
-    int (*dimensions)(const char *mesh);
-    int (*wants_initial)(void);
     int (*wants_saving)(void);
-    int (*wants_return)(void);
-    double (*longest)(void);
     void (*read)(const char *mesh, const char *data, int n, const int *id, double time, double *value);
+    int (*dimensions)(const char *mesh);
+    int (*wants_return)(void);
     void (*write)(const char *mesh, const char *data, int n, const int *id, const double *value);
+    double (*longest)(void);
 };
-static const char *const symbols[] = {"getVersionInformation",
-                                      "createParticipant",
-                                      "setMeshVertices",
-                                      "initialize",
-                                      "advance",
-                                      "finalize",
-                                      "isCouplingOngoing",
-                                      "getMeshDimensions",
-                                      "requiresInitialData",
-                                      "requiresWritingCheckpoint",
-                                      "requiresReadingCheckpoint",
-                                      "getMaxTimeStepSize",
-                                      "readData",
-                                      "writeData"};
+static const char *const symbols[] = {"initialize", "createParticipant", "getVersionInformation",
+                                      "advance",    "setMeshVertices",   "requiresInitialData",
+                                      "finalize",   "isCouplingOngoing", "requiresWritingCheckpoint",
+                                      "readData",   "getMeshDimensions", "requiresReadingCheckpoint",
+                                      "writeData",  "getMaxTimeStepSize"};
 enum { SYMBOLS = sizeof symbols / sizeof *symbols };
 
 enum { KIND_TEMPERATURE, KIND_SINK, KIND_FILM, KIND_POWER, KIND_FLUX, KIND_CONDUCTANCE, KIND_SOURCE, KINDS };

@@ -35,7 +35,8 @@ def test_what_is_public_is_documented():
         if not dataclasses.is_dataclass(what):
             continue
         section = what.__doc__.split("    Attributes\n    ----------\n")[1].split("    Examples\n")[0]
-        told = dict(re.findall(r"^    (\w+)\n((?:        .+\n?)+)", section, re.MULTILINE))
+        told = {one: text for names, text in re.findall(r"^    ([\w, ]+)\n((?:        .+\n?)+)", section, re.MULTILINE)
+                for one in names.split(", ")}
         fields = [field.name for field in dataclasses.fields(what) if not field.name.startswith("_")]
         assert fields and set(told) - {"SUN"} == set(fields), name
         assert all(len(text.split()) > 1 for text in told.values()), name

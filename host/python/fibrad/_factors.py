@@ -65,12 +65,9 @@ class Factors:
         (entries,) positions of the spheres that receive, from 0.
     data
         (entries,) factors from the sphere of the row to the sphere of the column.
-    escaped
-        (n,) factors to the surroundings.
-    beyond
-        (n,) fractions whose target is not known, beyond the cutoff.
-    error
-        (n,) estimated error of each row.
+    escaped, beyond, error
+        (n,) factors to the surroundings, fractions whose target is not known beyond the cutoff, and the estimated error of
+        each row.
     walls
         (n, walls) factors to each wall.
     wall_names
@@ -81,10 +78,8 @@ class Factors:
     wall_wall
         (walls, walls) factors from wall to wall. NaN from an endless wall. The factor from wall w to sphere i
         follows from ``A_w F_wi = A_i F_iw``, where A is area times emissivity for exchange factors.
-    wall_escaped
-        (walls,) factors from walls to the surroundings.
-    wall_error
-        (walls,) estimated error of ``wall_wall`` and ``wall_escaped``.
+    wall_escaped, wall_error
+        (walls,) factors from walls to the surroundings, and the estimated error of these and of ``wall_wall``.
     wall_correction
         Largest ``|sum - 1|`` of a row of a wall before closing. It shows how far rows of spheres and of walls
         disagree.
@@ -105,18 +100,13 @@ class Factors:
         Largest ``|A_i F_ij - A_j F_ji| / max(A_i, A_j)``. NaN if rows are missing.
     node_emissivity
         (n,) emissivities of the nodes of spheres that conduct. None: spheres do not conduct.
-    directions
-        Most directions of a row. 0: a method without directions.
-    fallbacks
-        Windows that the robust method for areas resolved.
-    rays
-        Rays traced, for exchange factors.
+    directions, fallbacks, rays
+        Most directions of a row, 0 of a method without directions. Windows that the robust method for areas resolved. Rays
+        traced, for exchange factors.
     overlap
         Largest overlap of two spheres over the smaller radius.
-    threads
-        Threads that were used.
-    seconds
-        [s] of computing.
+    threads, seconds
+        Threads that were used, and [s] of computing.
     """
 
     indptr: NDArray[np.int64]

@@ -31,12 +31,8 @@ class Powers:
 
     Attributes
     ----------
-    spheres
-        [W] (n,) net power of each sphere.
-    walls
-        [W] net power of each wall by name.
-    surroundings
-        [W] net power of the surroundings.
+    spheres, walls, surroundings
+        [W] net power of each sphere (n,), of each wall by name, and of the surroundings.
     temperatures
         [K] (n,) temperature of each sphere, given or found. NaN if the emissivity is 0.
     wall_temperatures
@@ -49,46 +45,27 @@ class Powers:
         [K] (t, 2) temperature of front and back of each triangle, by the name of the `Mesh`.
     emissivities
         (n,) emissivity of each sphere, at its temperature.
-    errors
-        [W] (n,) estimated error of `spheres`.
-    wall_errors
-        [W] estimated error of `walls`, by name.
-    surroundings_error
-        [W] estimated error of `surroundings`.
+    errors, wall_errors, surroundings_error
+        [W] estimated errors of `spheres` (n,), of `walls` by name, and of `surroundings`.
     temperature_errors
         [K] (n,) estimated error of `temperatures`, 0 if the temperature was given.
-    least_temperatures
-        [K] (n,) least temperature of the surface of each sphere. `temperatures` if the sphere does not conduct.
-    largest_temperatures
-        [K] (n,) largest temperature of the surface of each sphere, likewise.
-    centre_temperatures
-        [K] (n,) temperature in the centre of each sphere, likewise.
-    surface_errors
-        [K] (n,) estimated error of `least_temperatures` and `largest_temperatures`.
-    centre_errors
-        [K] (n,) estimated error of `centre_temperatures`.
-    conducted
-        [W] (n,) part of `spheres` that comes through contacts.
-    convected
-        [W] (n,) part of `spheres` that comes from gas. The rest is radiation.
-    wall_conducted
-        [W] part of `walls` that comes through contacts, by name.
-    wall_convected
-        [W] part of `walls` that comes from gas, by name.
-    gas
-        [W] net power of the gas.
-    gas_error
-        [W] estimated error of `gas`.
+    least_temperatures, largest_temperatures, centre_temperatures
+        [K] (n,) least and largest temperature of the surface of each sphere, and that in its centre. `temperatures` if
+        the sphere does not conduct.
+    surface_errors, centre_errors
+        [K] (n,) estimated errors of least and largest temperatures, and of `centre_temperatures`.
+    conducted, convected
+        [W] (n,) parts of `spheres` that come through contacts, and from gas. The rest is radiation.
+    wall_conducted, wall_convected
+        [W] the same parts of `walls`, by name.
+    gas, gas_error
+        [W] net power of the gas, and its estimated error.
     gas_temperatures
         [K] temperature of each slice of `gas_flow`, from the inlet to the outlet.
     contact_flows
         [W] (m,) what each contact conducts from i to j.
-    error
-        [W] estimated error of `spheres`, root mean square.
-    error_patches
-        [W] part of `error` that comes from patches.
-    error_beams
-        [W] part of `error` that comes from beams.
+    error, error_patches, error_beams
+        [W] estimated error of `spheres`, root mean square, and the parts of it that come from patches and beams.
     residual
         Residual of the radiosities, relative to the differences of emission.
     sweeps
@@ -145,16 +122,13 @@ class Store:
 
     Attributes
     ----------
-    temperature
-        [K] rows of a table, ascending. No temperature may leave them, unless there is one row.
-    capacity
-        [J/(kg K)] the heat capacity at these, linear in between.
-    melting
-        [K] melting point, or the middle of the range in which the material melts.
+    temperature, capacity
+        [K] rows of a table, ascending, and [J/(kg K)] the heat capacity at these, linear in between. No temperature may
+        leave them, unless there is one row.
+    melting, width
+        [K] melting point, or the middle and the width of the range in which the material melts.
     latent
         [J/kg] latent heat. 0: nothing melts.
-    width
-        [K] width of this range. 0: the material melts at one temperature.
     """
 
     temperature: ArrayLike = (1.0,)
@@ -191,16 +165,11 @@ class Advance:
         [K] (n,) temperatures of the spheres at the end.
     spheres
         [W] (n,) net radiative power of each sphere at the end.
-    walls
-        [J] energy that each wall has gained, by name.
-    surroundings
-        [J] energy that the surroundings have gained.
-    gas
-        [J] energy that the gas of `convection` has gained.
+    walls, surroundings, gas, held
+        [J] energy that each wall by name, the surroundings, the gas of `convection`, and spheres of infinite capacity have
+        gained.
     gas_temperatures
         [K] temperature of each slice of `gas_flow` at the end.
-    held
-        [J] energy that spheres of infinite capacity have gained.
     stored
         [J] (n,) heat that each sphere has stored.
     melted
@@ -210,10 +179,8 @@ class Advance:
     triangle_energies, triangle_temperatures
         [J] and [K] (t, 2) energy that front and back of each triangle have gained, and their temperatures at the end, by
         the name of the `Mesh`. Empty: no triangle has a film or a power behind it.
-    steps
-        Steps that were taken.
-    refused
-        Steps tried and refused.
+    steps, refused
+        Steps that were taken, and steps tried and refused.
     corrections
         Solutions by patches that corrected the exchange factors.
     error

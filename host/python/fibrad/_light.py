@@ -60,16 +60,11 @@ class Absorbed:
 
     Attributes
     ----------
-    spheres
-        [W] (n,) absorbed by each sphere, with all reflections.
-    first
-        [W] (n,) absorbed of the light that each sphere meets first.
-    errors
-        [W] (n,) estimated error of `spheres`.
-    walls
-        [W] absorbed by each wall by name.
-    walls_first
-        [W] absorbed of the light that each wall meets first, by name.
+    spheres, first, errors
+        [W] (n,) absorbed by each sphere with all reflections, absorbed of the light that it meets first, and the
+        estimated error of `spheres`.
+    walls, walls_first
+        [W] absorbed by each wall by name, and of the light that it meets first.
     incident
         [W] what all lights bring.
     transmitted

@@ -10,14 +10,16 @@
 #define VD_LANES 4
 #define VF_LANES 8
 
+#define MM(operation) _mm256_##operation
+
 typedef __m256d vd;
 typedef __m256i vm; /* integers have & and | */
 typedef __m256 vf;
 typedef __m256i vw;
 typedef __m256i vn;
 
-static inline vd vd_set1(double a) { return _mm256_set1_pd(a); }
-static inline vd vd_load(const double *p) { return _mm256_load_pd(p); }
+#include "base/lanes/vec_x86.h"
+
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
     __m128i i = _mm256_cvttpd_epi32(k);
     (void)size;
@@ -25,8 +27,8 @@ static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
                          table[_mm_extract_epi32(i, 0)]);
 }
 static inline void vd_compress(double *p, uint32_t bits, vd a) {
-    static const uint32_t half[16][8] = {/* the halves of doubles that move to the front */
-                                         {0},
+    /* the halves of doubles that move to the front */
+    static const uint32_t half[16][8] = {{0},
                                          {0, 1},
                                          {2, 3},
                                          {0, 1, 2, 3},
@@ -57,9 +59,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm256_set_pd(table[k[3]], table[k[2]], table[k[1]], table[k[0]]);
 }
-static inline vd vd_loadu(const double *p) { return _mm256_loadu_pd(p); }
-static inline void vd_store(double *p, vd a) { _mm256_store_pd(p, a); }
-static inline void vd_storeu(double *p, vd a) { _mm256_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) { return _mm256_cvtps_pd(_mm_load_ps(p)); }
 static inline vd vd_load_short(const uint16_t *p) {
     return _mm256_cvtepi32_pd(_mm_cvtepu16_epi32(_mm_loadl_epi64((const __m128i *)(const void *)p)));
@@ -68,9 +67,6 @@ static inline void vd_store_float(float *p, vd a) { _mm_store_ps(p, _mm256_cvtpd
 static inline void vd_store_numbers(uint32_t *p, vd a) {
     _mm_store_si128((__m128i *)(void *)p, _mm256_cvttpd_epi32(a));
 }
-static inline vd vd_sqrt(vd a) { return _mm256_sqrt_pd(a); }
-static inline vd vd_min(vd a, vd b) { return _mm256_min_pd(a, b); }
-static inline vd vd_max(vd a, vd b) { return _mm256_max_pd(a, b); }
 static inline vd vd_abs(vd a) { return _mm256_andnot_pd(_mm256_set1_pd(-0.0), a); }
 static inline vm vd_lt(vd a, vd b) { return _mm256_castpd_si256(_mm256_cmp_pd(a, b, _CMP_LT_OQ)); }
 static inline vm vd_le(vd a, vd b) { return _mm256_castpd_si256(_mm256_cmp_pd(a, b, _CMP_LE_OQ)); }
@@ -78,12 +74,6 @@ static inline vd vd_select(vm m, vd a, vd b) { return _mm256_blendv_pd(b, a, _mm
 static inline vm vm_not(vm a) { return ~a; }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm256_movemask_pd(_mm256_castsi256_pd(a)); }
 
-static inline vf vf_set1(float a) { return _mm256_set1_ps(a); }
-static inline vf vf_load(const float *p) { return _mm256_load_ps(p); }
-static inline void vf_storeu(float *p, vf a) { _mm256_storeu_ps(p, a); }
-static inline vf vf_sqrt(vf a) { return _mm256_sqrt_ps(a); }
-static inline vf vf_min(vf a, vf b) { return _mm256_min_ps(a, b); }
-static inline vf vf_max(vf a, vf b) { return _mm256_max_ps(a, b); }
 static inline vw vf_lt(vf a, vf b) { return _mm256_castps_si256(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
 static inline vf vf_select(vw m, vf a, vf b) { return _mm256_blendv_ps(b, a, _mm256_castsi256_ps(m)); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return (uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)); }
@@ -99,8 +89,8 @@ static inline vn vn_count_lt(vn n, vf a, vf b) {
 }
 /* Shifts by 32 and more leave no bits. */
 static inline vn vn_below(vf k) {
-    const __m256i by = _mm256_max_epi32(_mm256_cvtps_epi32(k), _mm256_setzero_si256()), all = _mm256_set1_epi32(-1);
-    return _mm256_andnot_si256(_mm256_sllv_epi32(all, by), all);
+    const vn by = MM(max_epi32)(MM(cvtps_epi32)(k), vn_zero()), all = MM(set1_epi32)(-1);
+    return MM(andnot_si256)(MM(sllv_epi32)(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm256_testz_si256(n, n); }
 /* Words are counted by ordinary instructions, which leave vector units to the caller. */

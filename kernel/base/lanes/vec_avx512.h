@@ -9,14 +9,16 @@
 #define VD_LANES 8
 #define VF_LANES 16
 
+#define MM(operation) _mm512_##operation
+
 typedef __m512d vd;
 typedef __mmask8 vm;
 typedef __m512 vf;
 typedef __mmask16 vw;
 typedef __m512i vn;
 
-static inline vd vd_set1(double a) { return _mm512_set1_pd(a); }
-static inline vd vd_load(const double *p) { return _mm512_load_pd(p); }
+#include "base/lanes/vec_x86.h"
+
 /* Tables of one or two vectors stay in registers. A gather would wait until all stores to the table have ended. */
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
     __m512i index = _mm512_cvttpd_epi64(k);
@@ -41,9 +43,6 @@ static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t f
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return _mm512_i32gather_pd(_mm256_loadu_si256((const __m256i *)(const void *)k), table, 8);
 }
-static inline vd vd_loadu(const double *p) { return _mm512_loadu_pd(p); }
-static inline void vd_store(double *p, vd a) { _mm512_store_pd(p, a); }
-static inline void vd_storeu(double *p, vd a) { _mm512_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) { return _mm512_cvtps_pd(_mm256_load_ps(p)); }
 static inline vd vd_load_short(const uint16_t *p) {
     return _mm512_cvtepi32_pd(_mm256_cvtepu16_epi32(_mm_load_si128((const __m128i *)(const void *)p)));
@@ -52,9 +51,6 @@ static inline void vd_store_float(float *p, vd a) { _mm256_store_ps(p, _mm512_cv
 static inline void vd_store_numbers(uint32_t *p, vd a) {
     _mm256_store_si256((__m256i *)(void *)p, _mm512_cvttpd_epi32(a));
 }
-static inline vd vd_sqrt(vd a) { return _mm512_sqrt_pd(a); }
-static inline vd vd_min(vd a, vd b) { return _mm512_min_pd(a, b); }
-static inline vd vd_max(vd a, vd b) { return _mm512_max_pd(a, b); }
 static inline vd vd_abs(vd a) { return _mm512_abs_pd(a); }
 static inline vm vd_lt(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LT_OQ); }
 static inline vm vd_le(vd a, vd b) { return _mm512_cmp_pd_mask(a, b, _CMP_LE_OQ); }
@@ -62,12 +58,6 @@ static inline vd vd_select(vm m, vd a, vd b) { return _mm512_mask_blend_pd(m, b,
 static inline vm vm_not(vm a) { return (vm)~a; }
 static inline uint32_t vm_bits(vm a) { return a; }
 
-static inline vf vf_set1(float a) { return _mm512_set1_ps(a); }
-static inline vf vf_load(const float *p) { return _mm512_load_ps(p); }
-static inline void vf_storeu(float *p, vf a) { _mm512_storeu_ps(p, a); }
-static inline vf vf_sqrt(vf a) { return _mm512_sqrt_ps(a); }
-static inline vf vf_min(vf a, vf b) { return _mm512_min_ps(a, b); }
-static inline vf vf_max(vf a, vf b) { return _mm512_max_ps(a, b); }
 static inline vw vf_lt(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 static inline vf vf_select(vw m, vf a, vf b) { return _mm512_mask_blend_ps(m, b, a); }
 static inline uint32_t vf_lt_bits(vf a, vf b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
@@ -83,8 +73,8 @@ static inline vn vn_count_lt(vn n, vf a, vf b) {
 }
 /* Shifts by 32 and more leave no bits. */
 static inline vn vn_below(vf k) {
-    const __m512i by = _mm512_max_epi32(_mm512_cvtps_epi32(k), _mm512_setzero_si512()), all = _mm512_set1_epi32(-1);
-    return _mm512_andnot_si512(_mm512_sllv_epi32(all, by), all);
+    const vn by = MM(max_epi32)(MM(cvtps_epi32)(k), vn_zero()), all = MM(set1_epi32)(-1);
+    return MM(andnot_si512)(MM(sllv_epi32)(all, by), all);
 }
 static inline bool vn_none(vn n) { return _mm512_test_epi32_mask(n, n) == 0; }
 /* Words are counted by ordinary instructions, which leave vector units to the caller. */

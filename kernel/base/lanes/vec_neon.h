@@ -5,7 +5,7 @@
 #include <arm_neon.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include "base/lanes/places.h"
+#include "base/lanes/vec_four.h"
 
 #define VD_LANES 2
 #define VF_LANES 4
@@ -30,11 +30,6 @@ static inline void vd_compress(double *p, uint32_t bits, vd a) {
 static inline vd vd_replace(vd a, uint32_t lane, double x) {
     static const uint64_t ones[4] = {0, UINT64_MAX, 0, 0};
     return vbslq_f64(vld1q_u64(ones + 1 - lane), vdupq_n_f64(x), a);
-}
-static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    p[0] = first + (bits == 2);
-    p[1] = first + 1;
-    return (bits & 1) + (bits >> 1);
 }
 static inline vd vd_gather(const double *table, const uint32_t *k) {
     return vcombine_f64(vld1_f64(table + k[0]), vld1_f64(table + k[1]));
@@ -91,18 +86,10 @@ static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
     for (uint32_t k = 0; k < count; k++) bytes = vaddq_u8(bytes, vcntq_u8(vreinterpretq_u8_u32(n[k])));
     return vaddlvq_u8(bytes);
 }
-static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
-    fibrad_compress_four(p, bits, from);
-    return fibrad_count_four(bits);
-}
 static inline void vf_compress(float *p, uint32_t bits, vf a) {
     _Alignas(16) uint32_t lane[4];
     vst1q_u32(lane, vreinterpretq_u32_f32(a));
     fibrad_compress_four((uint32_t *)(void *)p, bits, lane);
-}
-static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    fibrad_compress_places(p, bits, first);
-    return fibrad_count_four(bits);
 }
 
 #endif

@@ -5,10 +5,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <immintrin.h>
-#include "base/lanes/places.h"
+#include "base/lanes/vec_four.h"
 
 #define VD_LANES 2
 #define VF_LANES 4
+
+#define MM(operation) _mm_##operation
 
 typedef __m128d vd;
 typedef __m128i vm; /* integers have & and | */
@@ -16,8 +18,8 @@ typedef __m128 vf;
 typedef __m128i vw;
 typedef __m128i vn;
 
-static inline vd vd_set1(double a) { return _mm_set1_pd(a); }
-static inline vd vd_load(const double *p) { return _mm_load_pd(p); }
+#include "base/lanes/vec_x86.h"
+
 static inline vd vd_lookup(const double *table, uint32_t size, vd k) {
     (void)size;
     return _mm_set_pd(table[(uint32_t)_mm_cvtsd_f64(_mm_unpackhi_pd(k, k))], table[(uint32_t)_mm_cvtsd_f64(k)]);
@@ -33,24 +35,13 @@ static inline vd vd_replace(vd a, uint32_t lane, double x) {
     __m128d there = _mm_loadu_pd((const double *)(const void *)(ones + 1 - lane));
     return _mm_or_pd(_mm_and_pd(there, _mm_set1_pd(x)), _mm_andnot_pd(there, a));
 }
-static inline uint32_t vd_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    p[0] = first + (bits == 2);
-    p[1] = first + 1;
-    return (bits & 1) + (bits >> 1);
-}
 static inline vd vd_gather(const double *table, const uint32_t *k) { return _mm_set_pd(table[k[1]], table[k[0]]); }
-static inline vd vd_loadu(const double *p) { return _mm_loadu_pd(p); }
-static inline void vd_store(double *p, vd a) { _mm_store_pd(p, a); }
-static inline void vd_storeu(double *p, vd a) { _mm_storeu_pd(p, a); }
 static inline vd vd_load_float(const float *p) {
     return _mm_cvtps_pd(_mm_castsi128_ps(_mm_loadl_epi64((const __m128i *)(const void *)p)));
 }
 static inline vd vd_load_short(const uint16_t *p) { return _mm_set_pd(p[1], p[0]); }
 static inline void vd_store_float(float *p, vd a) { _mm_storel_pi((__m64 *)(void *)p, _mm_cvtpd_ps(a)); }
 static inline void vd_store_numbers(uint32_t *p, vd a) { _mm_storel_epi64((__m128i *)(void *)p, _mm_cvttpd_epi32(a)); }
-static inline vd vd_sqrt(vd a) { return _mm_sqrt_pd(a); }
-static inline vd vd_min(vd a, vd b) { return _mm_min_pd(a, b); }
-static inline vd vd_max(vd a, vd b) { return _mm_max_pd(a, b); }
 static inline vd vd_abs(vd a) { return _mm_andnot_pd(_mm_set1_pd(-0.0), a); }
 static inline vm vd_lt(vd a, vd b) { return _mm_castpd_si128(_mm_cmplt_pd(a, b)); }
 static inline vm vd_le(vd a, vd b) { return _mm_castpd_si128(_mm_cmple_pd(a, b)); }
@@ -61,12 +52,6 @@ static inline vd vd_select(vm m, vd a, vd b) {
 static inline vm vm_not(vm a) { return ~a; }
 static inline uint32_t vm_bits(vm a) { return (uint32_t)_mm_movemask_pd(_mm_castsi128_pd(a)); }
 
-static inline vf vf_set1(float a) { return _mm_set1_ps(a); }
-static inline vf vf_load(const float *p) { return _mm_load_ps(p); }
-static inline void vf_storeu(float *p, vf a) { _mm_storeu_ps(p, a); }
-static inline vf vf_sqrt(vf a) { return _mm_sqrt_ps(a); }
-static inline vf vf_min(vf a, vf b) { return _mm_min_ps(a, b); }
-static inline vf vf_max(vf a, vf b) { return _mm_max_ps(a, b); }
 static inline vw vf_lt(vf a, vf b) { return _mm_castps_si128(_mm_cmplt_ps(a, b)); }
 static inline vf vf_select(vw m, vf a, vf b) {
     __m128 set = _mm_castsi128_ps(m);
@@ -104,18 +89,10 @@ static inline uint32_t vn_count_bits(const vn *n, uint32_t count) {
     const __m128i sum = _mm_sad_epu8(bytes, _mm_setzero_si128());
     return (uint32_t)_mm_cvtsi128_si32(_mm_add_epi64(sum, _mm_unpackhi_epi64(sum, sum)));
 }
-static inline uint32_t vn_compress(uint32_t *p, uint32_t bits, const uint32_t *from) {
-    fibrad_compress_four(p, bits, from);
-    return fibrad_count_four(bits);
-}
 static inline void vf_compress(float *p, uint32_t bits, vf a) {
     _Alignas(16) uint32_t lane[4];
     vn_store(lane, _mm_castps_si128(a));
     fibrad_compress_four((uint32_t *)(void *)p, bits, lane);
-}
-static inline uint32_t vf_compress_places(uint32_t *p, uint32_t bits, uint32_t first) {
-    fibrad_compress_places(p, bits, first);
-    return fibrad_count_four(bits);
 }
 
 #endif
