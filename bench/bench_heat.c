@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "bed/packing.h"
+#include "../tests/copies.h"
 #include "bench_bed.h"
 #include "read/read.h"
 

@@ -12,6 +12,7 @@
 #include <sys/resource.h>
 
 #include "bed/packing.h"
+#include "../tests/copies.h"
 #include "bench_bed.h"
 #include "cli/message.h"
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 #include "bed/packing.h"
+#include "copies.h"
 #include "suite.h"
 
 /* The least distance between surfaces. If the bed is periodic, nearest images count. */

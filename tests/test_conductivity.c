@@ -3,6 +3,7 @@
  * The results are compared with laws of flights in slabs, closed forms of lattices, and the spread over seeds. */
 #include "conductivity/conductivity.h"
 #include "bed/packing.h"
+#include "copies.h"
 #include "program.h"
 
 FIXTURE(make_folder, remove_folder)

@@ -1,5 +1,6 @@
 /* test_heat_paths.c - net powers against paths that are followed one by one, and against published conductivities.
  * SPDX-License-Identifier: MIT */
+#include "copies.h"
 #include "heat_problem.h"
 
 LOOP_TEST(powers_are_those_of_paths, 3) {

@@ -9,6 +9,7 @@
 #include "bed/packing.h"
 #include "exchange/paths.h"
 #include "frames/solid_option.h"
+#include "copies.h"
 #include "program.h"
 
 FIXTURE(make_folder, remove_folder)

@@ -183,20 +183,6 @@ int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fra
                            : message(STATUS_INPUT, "cannot pack spheres of two sizes to %g of solid", fraction);
 }
 
-int bed_make_copies(struct bed *to, const struct bed *from, const uint32_t copies[3]) {
-    int status = STATUS_OK;
-    for (uint32_t i = 0; i < from->n; ++i)
-        for (uint32_t a = 0; a < copies[0]; ++a)
-            for (uint32_t b = 0; b < copies[1]; ++b)
-                for (uint32_t c = 0; c < copies[2] && !status; ++c)
-                    status = bed_add(to, &(struct bed_sphere){.x = from->x[i] + a * from->period[0],
-                                                              .y = from->y[i] + b * from->period[1],
-                                                              .z = from->z[i] + c * from->period[2],
-                                                              .r = from->r[i]});
-    for (int axis = 0; axis < 3; ++axis) to->period[axis] = to->high[axis] = copies[axis] * from->period[axis];
-    return status;
-}
-
 int bed_make_fcc(struct bed *bed, double low, double distance, uint64_t seed) {
     const double edge = sqrt(2);
     const int most = (int)(distance / edge) + 1;

@@ -21,11 +21,6 @@ int bed_make_jammed(struct bed *bed, uint32_t n, double fraction, uint32_t sweep
  * radius 1 with the same volume in all. */
 int bed_make_two_sizes(struct bed *bed, uint32_t large, double ratio, double fraction, uint64_t seed);
 
-/* Fills an empty bed with copies[axis] copies of a periodic bed side by side along each axis. So large beds are made
- * quickly: pushing apart takes more than linear time. The copies of one sphere follow each other. So neighbours in
- * space are as far apart in memory as in a random bed. Status 0 or STATUS_MEMORY. */
-int bed_make_copies(struct bed *to, const struct bed *from, const uint32_t copies[3]);
-
 /* Fills an empty bed with the sites of a face-centred cubic lattice within `distance` of the origin. Neighbours are at
  * distance 2. The first sphere stands at the origin and has radius 1. The other radii are uniform from low to 1. Status
  * 0 or STATUS_MEMORY. */

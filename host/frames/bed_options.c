@@ -269,11 +269,6 @@ int bed_options_made(struct bed_options *options, const struct bed *bed, const f
     return bed_options_status(options, bed, status, &fault);
 }
 
-static int compute_factors(struct bed_options *options, const struct bed *bed, fibrad_bed *made,
-                           const fibrad_bed_rule *rows, fibrad_bed_matrix **factors) {
-    return bed_options_made(options, bed, made, fibrad_bed_factors(made, rows, factors));
-}
-
 /* Refuses a bed whose rows will not fit into memory, or onto the disk of rows->scratch. */
 static int check_room(struct bed_options *options, const struct bed *bed, fibrad_bed *made,
                       const fibrad_bed_rule *rows) {
@@ -286,7 +281,7 @@ static int check_room(struct bed_options *options, const struct bed *bed, fibrad
     if (!marks) return message_memory();
     for (uint32_t k = 0; k < SAMPLE; ++k) marks[(uint64_t)bed->n * k / SAMPLE] = 1;
     some.wanted = marks;
-    int status = compute_factors(options, bed, made, &some, &factors);
+    int status = bed_options_made(options, bed, made, fibrad_bed_factors(made, &some, &factors));
     const double bytes = status ? 0 : (double)factors->matrix.start[factors->matrix.n] / SAMPLE * bed->n * ENTRY_BYTES;
     if (!status)
         status = rows->scratch
@@ -303,7 +298,7 @@ int bed_options_factors(struct bed_options *options, const struct bed *bed, cons
     *factors = NULL;
     rows->scratch = options->scratch, rows->walls = 1;
     int status = check_room(options, bed, made, rows);
-    if (!status) status = compute_factors(options, bed, made, rows, factors);
+    if (!status) status = bed_options_made(options, bed, made, fibrad_bed_factors(made, rows, factors));
     if (!status) warn_made(&options->warned, bed, walls, made, true);
     return status;
 }

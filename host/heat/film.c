@@ -73,15 +73,13 @@ static int find_wall_film(struct heat *h, uint32_t k) {
         return message(STATUS_USAGE, "--wall: %s is endless and has no convection", name);
     if (said->given & WALL_INSULATED)
         return message(STATUS_USAGE,
-                       "--wall: %s is insulated and has no convection; power=0 is a wall that gives off "
-                       "what it gains",
+                       "--wall: %s is insulated and has no convection; power=0 is a wall that gives off what it gains",
                        name);
     films->wall_follows[k] = isnan(said->gas);
     if (films->wall_follows[k] && (!gas->given || gas->column || gas->types || h->film.flux > 0))
         return message(STATUS_USAGE,
-                       "--wall: %s has convection and needs the temperature of its gas, %s:gas=300 for "
-                       "example",
-                       name, name);
+                       "--wall: %s has convection and needs the temperature of its gas, %s:gas=300 for example", name,
+                       name);
     films->wall_gas[k] = (isnan(said->gas) ? gas->value : said->gas) + h->given.zero;
     if (!(films->wall_gas[k] >= 0))
         return message(STATUS_USAGE, "--wall: gas of %s: %g is below absolute zero", name, said->gas);

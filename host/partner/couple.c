@@ -100,8 +100,7 @@ static int make_particles(struct heat *h, struct exchange *e) {
     p->gas = block + 3 * (size_t)bed->n, p->film = p->gas + bed->n, p->energy = p->film + bed->n;
     p->found = p->energy + bed->n, p->conductance = p->found + bed->n;
     for (uint32_t i = 0; i < bed->n; ++i) {
-        const double at[3] = {bed->x[i], bed->y[i], bed->z[i]};
-        for (int x = 0; x < 3; ++x) p->centre[i][x] = at[x] * bed->metres;
+        for (int axis = 0; axis < 3; ++axis) p->centre[i][axis] = bed_centres(bed, axis)[i] * bed->metres;
         p->found[i] = h->values.temperature[i];
     }
     return STATUS_OK;

@@ -22,10 +22,9 @@ typedef struct stream_heat {
 } stream_heat;
 
 static stream_heat heat_of_gas(const fibrad_stream *s, double t) {
-    const uint32_t last = s->points - 1;
     double content = 0, from = s->at[0], capacity = s->capacity[0];
     if (t <= from) return (stream_heat){capacity, capacity * (t - from)};
-    for (uint32_t k = 1; k <= last && from < t; k++) {
+    for (uint32_t k = 1; k < s->points && from < t; k++) {
         const double to = fibrad_min(t, s->at[k]), slope = (s->capacity[k] - capacity) / (s->at[k] - from);
         const double next = to < s->at[k] ? capacity + slope * (to - from) : s->capacity[k];
         content += (to - from) * (capacity + next) / 2;

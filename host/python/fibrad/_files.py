@@ -86,26 +86,20 @@ class FileFrame:
 
     Attributes
     ----------
-    x
-        [L] (n, 3) centres.
-    r
-        [L] (n,) radii.
+    x, r
+        [L] (n, 3) centres and (n,) radii.
     ids
         (n,) ids. None: the file has none.
     box
         [L] (3,) lengths of the periodic box, for the argument `box`. 0: the axis is open.
-    low
-        [L] (3,) lower corner of the box in the file. 0 if the file has no box.
-    high
-        [L] (3,) upper corner of the box in the file. 0 if the file has no box.
+    low, high
+        [L] (3,) lower and upper corner of the box in the file. 0 if the file has no box.
     columns
         (n,) values of each further column that was wanted.
     unit
         Name of the unit of length in the file. None: the file names none.
-    frame
-        Number of the frame in the file, from 0.
-    timestep
-        Timestep in the file. None: the file has none.
+    frame, timestep
+        Number of the frame in the file, from 0, and timestep in the file. None: the file has no timesteps.
     """
 
     x: NDArray[np.float64]
