@@ -25,7 +25,7 @@ TABLES     =
 # position independent, so that the archive also goes into shared objects; empty for machines without an operating system
 PIC        = -fPIC -fno-semantic-interposition
 # number in the name of the shared library: another one when a function or structure of the public headers changes
-ABI        = 2
+ABI        = 3
 # instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512, or neon
 MACHINE   := $(shell $(CC) -dumpmachine)
 ISAS      := scalar $(if $(filter x86_64% i%86%,$(MACHINE)),sse2 avx2 avx512) $(if $(filter aarch64%,$(MACHINE)),neon)
