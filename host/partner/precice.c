@@ -359,8 +359,8 @@ static int precice_give(struct exchange *e, bool *again) {
     return status;
 }
 
-/* After an error the destructors of preCICE, which run at the end of the program, would fail, or wait for the partner.
- */
+/* After an error the destructors of preCICE, which run at the end of the program, would fail. Partners see that their
+ * connections end. */
 static int precice_end(struct exchange *e, int status) {
     struct precice *p = e->state;
     if (!p) return status;
