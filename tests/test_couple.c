@@ -106,7 +106,7 @@ TEST(energy_of_windows) {
     for (int implicit = 0; implicit < 2; ++implicit) {
         setenv("IMPLICIT", implicit ? "1" : "0", 1), setenv("LEAK", "0.3", 1);
         config = write_config(DIRICHLET GAS);
-        SUCCEED(BED, "--convection", "20", "--json", json, "--step", "50");
+        SUCCEED(BED, "--convection", "20", "--json", json, "--step", "50", "--plot", in_folder("q.svg"));
         assert_energy(json, 1);
         ck_assert(implicit ? sum_of(json, "iterations") > 8 : sum_of(json, "iterations") == 2);
         unlink(received);
