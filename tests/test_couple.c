@@ -158,17 +158,18 @@ static void refuse(int status, const char *reason, const char *of_bed) {
 TEST(bad_input) {
     FAIL_WITH(2, "couple", bed, "--precice", config, "--participant", "Bad", MATTER);
     expect_message(config, "there is no participant Bad; there are Other, Bed");
-    refuse(2, "Bed-tube ends in the name of no wall of triangles", "<provide-mesh name=\"Bed-tube\"/>");
+    refuse(2, "the name of the mesh Bed-tube ends neither in the name of a wall of triangles nor",
+           "<provide-mesh name=\"Bed-tube\"/>");
     refuse(2, "Bed-oven reads Pressure; faces read Temperature",
            FACES "<read-data name=\"Pressure\" mesh=\"Bed-oven\"/>");
-    refuse(2, "only one of Heat-Transfer-Coefficient and Sink",
+    refuse(2, "Bed-oven reads only one of Heat-Transfer-Coefficient and Sink",
            FACES "<read-data name=\"Sink-Temperature\" mesh=\"Bed-oven\"/>");
-    refuse(2, "particles read no Heat-Transfer-Coefficient; --convection H gives one", GAS);
-    refuse(2, "has no mesh", "");
+    refuse(2, "particles read a Temperature but no Heat-Transfer-Coefficient; --convection H gives one", GAS);
+    refuse(2, "the participant Bed provides no mesh", "");
     setenv("FAULT", "zero", 1);
-    refuse(3, "preCICE gives Temperature of Bed-oven: 0 at vertex 6", DIRICHLET);
+    refuse(3, "preCICE gives Temperature of Bed-oven as 0 at vertex 6; a temperature above 0 K is expected", DIRICHLET);
     setenv("VERSION", "2.5.0;", 1);
-    refuse(4, "this is preCICE 2.5.0; versions 3 are known", DIRICHLET);
+    refuse(4, "this is preCICE 2.5.0; version 3 is needed", DIRICHLET);
     setenv("LD_LIBRARY_PATH", "/nowhere", 1);
     refuse(4, "libprecice.so.3 cannot be loaded", DIRICHLET);
 }

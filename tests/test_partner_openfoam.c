@@ -238,12 +238,12 @@ TEST(bad_input) {
     static const struct {
         const char *fault, *reason;
     } cases[] = {
-        {"few", "T.out:6: the file ends before its last face"},
-        {"many", "T.out:8: patchFaces has 6 faces only"},
+        {"few", "T.out:6: the file ends too early"},
+        {"many", "T.out:8: a row too many; patchFaces has 6 faces"},
         {"zero", "T.out:7: wall and fluid have 0 K"},
         {"nan", "T.out:7: wall and fluid have nan K"},
-        {"old", "T.out:7: the face has 0.02 m2, and 0.01 m2 in patchFaces"},
-        {"units", "the faces have 60000 m2, and the triangles of the bed 0.06 m2: these are two units of length"},
+        {"old", "T.out:7: the face has 0.02 m2, but 0.01 m2 in patchFaces"},
+        {"units", "the faces have 60000 m2, but the triangles of the bed have 0.06 m2; their units of length differ"},
         {"elsewhere", "12 of 12 triangles of the bed are at no face, the first at ("},
         {"bare", "1 of 7 faces are at no triangle of the bed, the first at (0.0"}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
