@@ -48,7 +48,7 @@ static int choose_walls(struct exchange *e) {
     return STATUS_OK;
 }
 
-/* A wall whose faces are exchanged has one emissivity above 0, and a temperature with which it begins. */
+/* A wall whose faces are exchanged has an emissivity above 0, and a temperature at which it begins. */
 static int check_walls(const struct heat *h, const struct exchange *e) {
     for (uint32_t k = 0; k < h->walls.count; ++k) {
         const char *name = wall_name(&h->walls, k);
@@ -56,10 +56,12 @@ static int check_walls(const struct heat *h, const struct exchange *e) {
         if (isnan(h->values.wall_temperature[k]) || h->values.insulated[k])
             return message(STATUS_USAGE, "--wall: %s has faces of %s and needs the temperature at which it begins, %s",
                            name, e->name, "temperature=300 for example");
+        if (!(h->wall_emissivity[k] > 0))
+            return message(STATUS_USAGE, "--wall: %s has faces of %s and needs an emissivity above 0", name, e->name);
         if (h->walls.said[k].given & (WALL_CAPACITY | WALL_CONVECTION))
             return message(STATUS_USAGE,
-                           "--wall: %s has faces of %s, which stores and carries away its heat; leave "
-                           "out capacity and convection",
+                           "--wall: %s has faces of %s, which stores and carries away its heat; leave out capacity and "
+                           "convection",
                            name, e->name);
     }
     return STATUS_OK;

@@ -113,7 +113,7 @@ static int wait_for_turn(const struct exchange *exchange, enum turn *turn) {
     while (!(status = look_at_lock(foam, turn)) && *turn == THEIRS && !(status = interrupt_status())) {
         foam->silent = waited > exchange->timeout;
         if (foam->silent)
-            return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; has it ended?", foam->folder,
+            return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; is it running?", foam->folder,
                            exchange->timeout);
         nanosleep(&pause, NULL);
         waited += 1e-9 * (double)pause.tv_nsec;

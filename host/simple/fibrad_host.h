@@ -346,8 +346,9 @@ typedef struct fibrad_store {
  * spheres gain, their powers included.
  *
  * The side_energy of all sides of a wall adds up to its wall_energy. What the wall gains through contacts and its film
- * is spread over its sides by area. If sources->absorbed is set, the sum has the light that the wall absorbs in place of
- * contacts and film. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to rounding.
+ * is spread over its sides by area. If sources->absorbed is set, the sum has the light that the wall absorbs, and
+ * leaves out contacts and film. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to
+ * rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
  * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own, no
