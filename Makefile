@@ -25,7 +25,7 @@ TABLES     =
 # position independent, so that the archive also goes into shared objects; empty for machines without an operating system
 PIC        = -fPIC -fno-semantic-interposition
 # number in the name of the shared library: another one when a function or structure of the public headers changes
-ABI        = 2
+ABI        = 3
 # instruction sets of the laned sources: scalar, then any of sse2 avx2 avx512, or neon
 MACHINE   := $(shell $(CC) -dumpmachine)
 ISAS      := scalar $(if $(filter x86_64% i%86%,$(MACHINE)),sse2 avx2 avx512) $(if $(filter aarch64%,$(MACHINE)),neon)
@@ -307,7 +307,7 @@ calls: lib lib-host $(BUILD)/libhost.a
 symbols: lib lib-host
 	BUILD=$(BUILD) tests/check_symbols.sh
 
-FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*/*.[ch] host/*/*/*.cpp host/couple/lammps/debian/fmt/*.h tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch] docs/examples/*.c docs/examples/*.cpp)
+FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*/*.[ch] host/*/*/*.[ch] host/*/*/*.cpp host/couple/lammps/debian/fmt/*.h tests/*.[ch] tests/*/*.[ch] tests/*/*.cpp bench/*.[ch] docs/examples/*.c docs/examples/*.cpp docs/examples/*/*.c)
 
 ## format: every source has the format of .clang-format (to repair: clang-format -i FILE)
 format:
@@ -512,14 +512,14 @@ COMPLETIONS = $(DESTDIR)$(PREFIX)/share/bash-completion/completions
 ## install: the program, its manual pages and completion, documents, libraries, headers and .pc files, to DESTDIR and PREFIX
 install: install-lib $(BUILD)/fibrad man
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(COMPLETIONS) \
-	    $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/examples
+	    $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures
 	install $(BUILD)/fibrad $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(BUILD)/man/*.1 $(DESTDIR)$(PREFIX)/share/man/man1
 	install -m 644 host/cli/man/fibrad.bash $(COMPLETIONS)/fibrad
 	install -m 644 README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md $(DESTDIR)$(PREFIX)/share/doc/fibrad
 	install -m 644 docs/*.md $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 	install -m 644 docs/figures/* $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/figures
-	install -m 644 docs/examples/* $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs/examples
+	cp -r docs/examples $(DESTDIR)$(PREFIX)/share/doc/fibrad/docs
 
 PC_FILES = kernel/fibrad.pc.in host/simple/fibrad_host.pc.in
 

@@ -100,7 +100,7 @@
 extern "C" {
 #endif
 
-#define FIBRAD_VERSION "0.4.0"
+#define FIBRAD_VERSION "0.5.0"
 
 #define FIBRAD_STEFAN_BOLTZMANN 5.670374419e-8 /* W/(m2 K4) */
 

@@ -76,7 +76,7 @@ libfibrad.a needs no heap and no other library.
 END
 pack fibrad science "Depends: $(needs "$out/fibrad/usr/bin/fibrad")
 Recommends: gnuplot-nox | gnuplot
-Suggests: lammps, python3-fibrad" 'thermal radiation in packed beds, program' <<END
+Suggests: lammps, libprecice3, python3-fibrad" 'thermal radiation in packed beds, program' <<END
 Computes view factors, powers, temperatures and conductivities of beds of
 spheres from files of DEM codes, with pages and examples. docs/lammps.md says
 how radiation gets into a simulation with LAMMPS or LIGGGHTS.

@@ -81,7 +81,7 @@ struct precice {
     void *handle;
     int *id;       /* [faces, then particles] of vertices */
     double *value; /* [the same] */
-    bool created, failed;
+    bool created;
 };
 
 /* ---- the configuration ------------------------------------------------------------------------------------------- */
@@ -249,7 +249,6 @@ static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     if (interrupt_status()) return interrupt_status();
     if (signal == SIGABRT) status = message(STATUS_FILE, "preCICE has ended with an error, which it has printed");
     if (signal == SIGALRM) status = message(STATUS_FILE, "no word from preCICE in %g s (--timeout)", e->timeout);
-    if (signal) ((struct precice *)e->state)->failed = true;
     return status;
 }
 
@@ -380,12 +379,13 @@ static int precice_give(struct exchange *e, bool *again) {
     return status;
 }
 
-/* After an error of preCICE its destructors would fail at the end of the program: _exit leaves them out. */
+/* After an error the destructors of preCICE would fail at the end of the program: _exit leaves them out. Partners see
+ * that their connections end. */
 static int precice_end(struct exchange *e, int status) {
     struct precice *p = e->state;
     if (!p) return status;
-    if (p->created && !p->failed && !status) status = guarded(e, finish_now);
-    if (p->failed) {
+    if (p->created && !status) status = guarded(e, finish_now);
+    if (p->created && status) {
         fflush(stdout);
         _exit(status);
     }

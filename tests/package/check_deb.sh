@@ -31,7 +31,7 @@ man -l "$usr/share/man/man1/fibrad.1.gz" >/dev/null 2>&1 || ! command -v man >/d
 cat >"$work/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.10)
 project(uses_fibrad C CXX)
-find_package(fibrad 0.4 REQUIRED)
+find_package(fibrad 0.5 REQUIRED)
 add_executable(in_c pair.c)
 target_link_libraries(in_c fibrad::host)
 add_executable(in_cpp pair.cpp)

@@ -67,7 +67,7 @@ prefix=$tree/all/opt/fibrad
         lib/cmake/fibrad/fibradConfig.cmake lib/cmake/fibrad/fibradConfigVersion.cmake; do
         echo "$file"
     done
-    for file in README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md docs/*.md docs/figures/* docs/examples/*; do
+    for file in README.md CHANGELOG.md LICENSE CITATION.cff SECURITY.md docs/*.md docs/figures/* $(find docs/examples -type f); do
         echo "share/doc/fibrad/$file"
     done
     for file in "$tree"/usr/include/*.h; do echo "include/${file##*/}"; done

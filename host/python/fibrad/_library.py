@@ -14,7 +14,7 @@ def _load() -> ctypes.CDLL:
     here = pathlib.Path(__file__).resolve().parent
     named = os.environ.get("FIBRAD_LIBRARY")
     places = [here / "libfibrad.so", here.parents[2] / os.environ.get("BUILD", "build") / "libfibrad.so"]
-    path = named or next((str(place) for place in places if place.exists()), "libfibrad.so.2")
+    path = named or next((str(place) for place in places if place.exists()), "libfibrad.so.3")
     try:
         return ctypes.CDLL(path)
     except OSError as error:
