@@ -171,16 +171,17 @@ typedef struct fibrad_stream {
  * the power, or to 5 % of what the wall absorbs, whichever is more. If a temperature is unknown, the tolerance of
  * these powers is 100 times as large, at most 1e-3.
  *
- * side_temperature is in the order of the caller's triangles, as are side_film, side_gas and side_power. If sides share
- * a patch, each side emits the mean of their emissions. The temperature T of a side that has a film or a power is
- * found:
+ * The arrays side_temperature, side_film, side_gas and side_power are in the order of the caller's triangles. If sides
+ * share a patch, each side emits the mean of their emissions. If a side has a film or a power, its temperature T is
+ * found. H is the radiation that arrives per area:
  *
  *     eps (H - sigma T^4) + side_film (side_gas - T) + side_power = 0.
  *
- * side_film is a heat transfer coefficient. It and side_power are per area of the side. A side of power 0 sends out all
- * that it takes in. The side has no side_temperature. Its wall has a given temperature, with which the search begins,
- * and an emissivity above 0. The net power of side and wall is what they gain by radiation. A side that absorbs light
- * (`absorbed`) gives it off, too. If only a temperature below 0 would balance a side, there is no solution. */
+ * side_film is a heat transfer coefficient, and side_power is a power per area of the side. A side of power 0 sends out
+ * all that it takes in. A side with a film or a power must have no side_temperature. Its wall must have an emissivity
+ * above 0, and a given temperature, with which the search begins. The net powers of the side and of its wall are what
+ * they gain by radiation. If the side absorbs light (`absorbed`), it gives off this light, too. If only a temperature
+ * below 0 would balance a side, there is no solution. */
 typedef struct fibrad_heat_sources {
     const double *temperature; /* K, [spheres], 0 to FIBRAD_TEMPERATURE_MAX; NaN: unknown */
     const double *emissivity;  /* [spheres], 0 to 1 */

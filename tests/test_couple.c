@@ -70,7 +70,7 @@ FIXTURE(begin, end)
 #define ROUGHLY "--directions", "16", "--patches", "24", "--wall-rays", "20000", "--threads", "1"
 #define BED     "couple", bed, "--precice", config, "--participant", "Bed", MATTER, "--wall", box, ROUGHLY
 
-/* Value k of line i of the file of the stand-in: two lines a window, what it has received and a first vertex. */
+/* Value k of line i of the file of the stand-in: two lines a time window, what it has received and a first vertex. */
 static double received_at(int i, int k) {
     const char *at = read_file(received);
     for (; i > 0; --i) at = strchr(at, '\n') + 1;
@@ -78,7 +78,7 @@ static double received_at(int i, int k) {
     return strtod(at, NULL);
 }
 
-/* Sums of a key over all windows of a file of --json. */
+/* Sums of a key over all time windows of a file of --json. */
 static double sum_of(const char *path, const char *key) {
     double sum = 0;
     const char *wanted = formatted("\"%s\": ", key);
@@ -113,7 +113,7 @@ TEST(energy_of_windows) {
     }
 }
 
-/* With temperatures that do not change, windows are steps of the same run. */
+/* With temperatures that do not change, time windows are steps of the same run. */
 TEST(as_heat_alone) {
     const char *q = in_folder("q.csv"), *other = in_folder("other.csv");
     config = write_config(DIRICHLET GAS);
@@ -158,22 +158,25 @@ static void refuse(int status, const char *reason, const char *of_bed) {
 TEST(bad_input) {
     FAIL_WITH(2, "couple", bed, "--precice", config, "--participant", "Bad", MATTER);
     expect_message(config, "there is no participant Bad; there are Other, Bed");
-    refuse(2, "Bed-tube ends in the name of no wall of triangles", "<provide-mesh name=\"Bed-tube\"/>");
+    refuse(2, "the name of the mesh Bed-tube ends neither in the name of a wall of triangles nor",
+           "<provide-mesh name=\"Bed-tube\"/>");
     refuse(2, "Bed-oven reads Pressure; faces read Temperature",
            FACES "<read-data name=\"Pressure\" mesh=\"Bed-oven\"/>");
-    refuse(2, "only one of Heat-Transfer-Coefficient and Sink",
+    refuse(2, "Bed-oven reads only one of Heat-Transfer-Coefficient and Sink",
            FACES "<read-data name=\"Sink-Temperature\" mesh=\"Bed-oven\"/>");
-    refuse(2, "particles read no Heat-Transfer-Coefficient; --convection H gives one", GAS);
-    refuse(2, "has no mesh", "");
+    refuse(2, "particles read a Temperature but no Heat-Transfer-Coefficient; --convection H gives one", GAS);
+    refuse(2, "the participant Bed provides no mesh", "");
     setenv("FAULT", "zero", 1);
-    refuse(3, "preCICE gives Temperature of Bed-oven: 0 at vertex 6", DIRICHLET);
+    refuse(3, "preCICE gives Temperature of Bed-oven as 0 at vertex 6; a temperature above 0 K is expected", DIRICHLET);
     setenv("VERSION", "2.5.0;", 1);
-    refuse(4, "this is preCICE 2.5.0; versions 3 are known", DIRICHLET);
+    refuse(4, "this is preCICE 2.5.0; version 3 is needed", DIRICHLET);
     setenv("LD_LIBRARY_PATH", "/nowhere", 1);
     refuse(4, "libprecice.so.3 cannot be loaded", DIRICHLET);
+    box = formatted("mesh:%s:name=oven:temperature=300:emissivity=0", in_folder("oven.stl"));
+    refuse(2, "--wall: oven has faces of preCICE and needs an emissivity above 0", DIRICHLET);
 }
 
-/* The outputs of windows that have ended stay. */
+/* The outputs of time windows that have ended stay. */
 TEST(a_partner_dies) {
     const char *q = in_folder("q.csv"), *json = in_folder("q.json");
     setenv("FAULT", "die", 1);

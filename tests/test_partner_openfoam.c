@@ -7,7 +7,7 @@
 #include "program.h"
 
 enum { FACES = 6, WINDOWS = 12 };
-#define LENGTH 1e5 /* [s] of a window, and of a step: the bed is soon steady */
+#define LENGTH 1e5 /* [s] of a time window, and of a step: the bed is soon steady */
 #define POWER  46  /* [W] of all spheres */
 
 static const int quad[FACES][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
@@ -227,9 +227,9 @@ TEST(watts_are_kept) {
     ck_assert_int_eq(waitpid(foam, &foam_end, 0), foam);
     ck_assert(foam_end == 0 && windows == WINDOWS);
     const char *line = read_file(received);
-    for (int k = 0; k < WINDOWS - 1; ++k) { /* OpenFOAM has the temperatures a window later */
+    for (int k = 0; k < WINDOWS - 1; ++k) { /* OpenFOAM has the temperatures a time window later */
         line = strchr(line, '\n') + 1;
-        if (k > 0) assert_near(strtod(line, NULL), energy[k], 1e-12); /* in window 0 a face has no film */
+        if (k > 0) assert_near(strtod(line, NULL), energy[k], 1e-12); /* in time window 0 a face has no film */
     }
 }
 
@@ -238,12 +238,12 @@ TEST(bad_input) {
     static const struct {
         const char *fault, *reason;
     } cases[] = {
-        {"few", "T.out:6: the file ends before its last face"},
-        {"many", "T.out:8: patchFaces has 6 faces only"},
+        {"few", "T.out:6: the file ends too early"},
+        {"many", "T.out:8: a row too many; patchFaces has 6 faces"},
         {"zero", "T.out:7: wall and fluid have 0 K"},
         {"nan", "T.out:7: wall and fluid have nan K"},
-        {"old", "T.out:7: the face has 0.02 m2, and 0.01 m2 in patchFaces"},
-        {"units", "the faces have 60000 m2, and the triangles of the bed 0.06 m2: these are two units of length"},
+        {"old", "T.out:7: the face has 0.02 m2, but 0.01 m2 in patchFaces"},
+        {"units", "the faces have 60000 m2, but the triangles of the bed have 0.06 m2; their units of length differ"},
         {"elsewhere", "12 of 12 triangles of the bed are at no face, the first at ("},
         {"bare", "1 of 7 faces are at no triangle of the bed, the first at (0.0"}};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
@@ -255,7 +255,7 @@ TEST(bad_input) {
     }
 }
 
-/* The outputs of windows that have ended stay. */
+/* The outputs of time windows that have ended stay. */
 TEST(openfoam_dies) {
     const char *json = in_folder("q.json");
     int asked;

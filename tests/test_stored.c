@@ -234,8 +234,7 @@ LOOP_TEST(wall_stores, 3) {
     double end, energy, stored;
     temperature = 1000, wall = 300, s.surroundings = 400, s.power = &light, s.tolerance = 1e-7;
     s.wall_power = &h.power, s.wall_film = &h.film, s.wall_gas = &gas, s.temperature = NULL;
-    fibrad_span span = {&temperature,    &capacity, 40, .tolerance = 1e-6, .wall_capacity = &h.capacity,
-                        .wall_end = &end};
+    fibrad_span span = {&temperature, &capacity, 40, .tolerance = 1e-6, .wall_capacity = &h.capacity, .wall_end = &end};
     span.wall_energy = &energy, span.stored = &stored;
     for (int part = 0; part < 2; ++part) {
         assert_ok(fibrad_bed_advance(made, &s, &span));

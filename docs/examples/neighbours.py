@@ -1,6 +1,6 @@
 # neighbours.py - powers of spheres by the models of other codes, beside those of fibrad. SPDX-License-Identifier: MIT
-"""Run `python3 neighbours.py bed.dump ...`, with fibrad in the PATH and NumPy. Each bed stands in a box that sends back all
-that arrives, so the powers of all spheres add up to 0. docs/beside.md says what the models and columns are."""
+"""Run `python3 neighbours.py bed.dump ...`. fibrad is in the PATH, and NumPy is needed. Each bed stands in an insulated box,
+so the powers of all spheres add up to 0. docs/beside.md says what the models and columns are."""
 import subprocess
 import sys
 
@@ -16,7 +16,7 @@ def read(name):
 
 
 def true_powers(x, r, T):
-    """Powers and their estimated errors, by `fibrad heat` in an insulated box that ends where the spheres end."""
+    """Powers [W] and their estimated errors by `fibrad heat`, in an insulated box that ends where the spheres end."""
     table = "x [m],y [m],z [m],r [m],T\n" + "\n".join(",".join(map(repr, row)) for row in np.c_[x, r, T].tolist())
     run = subprocess.run(["fibrad", "heat", "-", "--emissivity", str(EMISSIVITY), "--temperature", "T", "--wall",
                           f"box:insulated:emissivity={EMISSIVITY}", "--format", "csv", "-o", "-", "--quiet"],
@@ -26,8 +26,8 @@ def true_powers(x, r, T):
 
 
 def pair_factor(s):
-    """View factor between two equal spheres alone, their centres s radii apart: the mean over rings of the sphere of the
-    factor from a small plane to a sphere, which may be cut by the plane's horizon."""
+    """View factor between two equal spheres alone, their centres s radii apart. It is the mean, over rings of one sphere, of
+    the factor from a small plane to the other sphere. The horizon of the plane may cut this sphere."""
     u = 1 - (np.arange(2000) + 0.5) / 1000  # cosines of the rings
     h = np.sqrt(s * s + 1 - 2 * s * u)  # from a ring to the centre of the other sphere
     cos = (s * u - 1) / h
@@ -41,7 +41,7 @@ def pair_factor(s):
 
 
 def models(x, r, T):
-    """Yields a name, the powers, and the largest sum of view factors of a sphere, or 0."""
+    """Yields for each model its name, the powers [W], and the largest sum of view factors of a sphere (0: it has none)."""
     A, E, D = 4 * np.pi * r**2, SIGMA * T**4, 2 * r.mean()
     distance = np.linalg.norm(x[:, None] - x, axis=2)
     np.fill_diagonal(distance, np.inf)

@@ -11,7 +11,7 @@ struct couple {
     const struct partner *partner; /* NULL: not known yet */
     struct exchange exchange;
     double every;
-    int ended; /* what the partner has ended with */
+    int ended; /* status with which the partner has ended */
 };
 
 static int every_option(const char *text, void *every) {
@@ -21,23 +21,25 @@ static int every_option(const char *text, void *every) {
 }
 
 static const struct option own_options[] = {
-    {0, "precice", "FILE", "the partner is preCICE; FILE is its configuration, .xml",
+    {0, "precice", "FILE", "couple by preCICE, whose configuration is FILE (.xml)",
      TO_TEXT(struct couple, exchange.file)},
-    {0, "participant", "NAME", "the name of this bed in that file", TO_TEXT(struct couple, exchange.participant)},
-    {0, "openfoam", "DIR", "the partner is OpenFOAM, by its files of externalCoupled in the folder DIR",
+    {0, "participant", "NAME", "the name of this bed in the configuration of preCICE",
+     TO_TEXT(struct couple, exchange.participant)},
+    {0, "openfoam", "DIR",
+     "couple with OpenFOAM, whose case is the folder DIR; without a case, DIR is the folder commsDir itself",
      TO_TEXT(struct couple, exchange.folder)},
-    {0, "window", "S", "with --openfoam: seconds from one exchange to the next",
+    {0, "window", "S", "with --openfoam: length of a time window, the seconds from one exchange to the next",
      TO_NUMBER(struct couple, exchange.window, 1 / SECONDS_MAX, SECONDS_MAX)},
-    {0, "faces", "WALL,...", "with --openfoam: walls whose triangles are its faces [all walls of triangles]",
+    {0, "faces", "WALL,...", "with --openfoam: walls whose triangles lie on its faces [all walls of triangles]",
      TO_TEXT(struct couple, exchange.wall_names)},
-    {0, "timeout", "S", "longest time to wait for the partner [600 with --openfoam; no limit with --precice]",
+    {0, "timeout", "S", "longest time to wait for the other solver [600 with --openfoam, no limit with --precice]",
      TO_NUMBER(struct couple, exchange.timeout, 1e-3, SECONDS_MAX)},
     {0, "times", "every:S", "seconds from one output to the next [the end alone]",
      TO_FUNCTION(every_option, struct couple, every)}};
 
 enum { OWN = sizeof own_options / sizeof *own_options, OPTIONS_MOST = 80 };
 
-/* The options of this command: its own, and those of `heat` but for some that mean nothing here. */
+/* The options of this command: its own, and those of `heat` that have a meaning here. */
 static const struct option *couple_options(void) {
     static const char *const left_out[] = {"until", "times", "error", "face", "frame"};
     static struct option table[OPTIONS_MOST];
@@ -54,36 +56,36 @@ static const struct option *couple_options(void) {
 
 static int couple_help(void) {
     static const char *more[40] = {
-        "preCICE: The configuration says which meshes the participant provides. A mesh whose name ends in the name of "
-        "a\n"
-        "wall of triangles has its faces, one that ends in Particles has the spheres. Data are known by the ends of\n"
-        "their names. Faces read Temperature [K], or Heat-Transfer-Coefficient [W/(m2 K)] and Sink-Temperature [K]. "
-        "They\n"
-        "write Power [W, conservative], Heat-Flux [W/m2] or Temperature. Particles read Temperature of the gas, and "
-        "may\n"
-        "read Heat-Transfer-Coefficient. They write Power [W] to the gas or\n"
-        "Temperature. Or they write Source [W] and Conductance [W/K]: the gas gains Source - Conductance T at T. "
-        "Lengths "
-        "are in metres.\n",
-        "OpenFOAM: The boundary condition externalCoupledTemperature and the function object externalCoupled give and\n"
-        "take the files. The triangles of --faces lie on the faces of its patch.\n"
-        "The partner says how long the run is. Powers are means over a window, so both sides count the same energy.\n"
-        "Each window has a part in the summary and in --json. Each wall with faces begins at its :temperature=T.\n"};
+        "preCICE: The configuration says which meshes and data the participant has. The ends of their names, behind\n"
+        "- or _, say what they are. A mesh that ends in the name of a wall of triangles has its faces. One that ends\n"
+        "in Particles has the spheres. Vertices are the centres of triangles or spheres, in metres. Data end in:\n"
+        "  faces read        Temperature [K], or Heat-Transfer-Coefficient [W/(m2 K)] and Sink-Temperature [K]\n"
+        "  faces write       Power [W], conservative; Heat-Flux [W/m2]; Temperature [K]\n"
+        "  particles read    Temperature [K] of the gas; Heat-Transfer-Coefficient [else --convection]\n"
+        "  particles write   Power [W] to the gas, conservative; Temperature [K]\n"
+        "                    Source [W] and Conductance [W/K], conservative: a gas at T gains Source - Conductance T\n",
+        "OpenFOAM: The function object externalCoupled and the boundary condition externalCoupledTemperature write\n"
+        "and read the files. Each triangle of --faces lies on a face of the patch.\n"
+        "The other solver says when the run ends. Powers are means over a time window, so both sides count the same\n"
+        "energy. The summary and --json have the energies of each time window. A wall whose faces are exchanged\n"
+        "begins at its :temperature=T.\n"};
     size_t n = 2;
     for (; n < 39 && heat_more[n - 2]; ++n) more[n] = heat_more[n - 2];
-    options_help("couple",
-                 "fibrad couple FILE --precice CONFIG --participant NAME [options of fibrad heat]\n"
-                 "fibrad couple FILE --openfoam DIR --window S [options of fibrad heat]\n\n"
-                 "Temperatures of a bed in time, beside a solver that has its walls of triangles or its gas.\n",
-                 couple_options(), more,
-                 "Examples:\n"
-                 "  fibrad couple bed.csv --precice precice-config.xml --participant Bed --emissivity 0.8 \\\n"
-                 "      --temperature 300 --ambient 300 --heat-capacity 800 --density 2500 \\\n"
-                 "      --wall mesh:Tube.stl:temperature=300:emissivity=0.7 -o 'bed.*.vtp' --times every:60\n");
+    options_help(
+        "couple",
+        "fibrad couple FILE --precice CONFIG --participant NAME [options of fibrad heat]\n"
+        "fibrad couple FILE --openfoam DIR --window S [options of fibrad heat]\n\n"
+        "Finds the temperatures of a bed in time. Another solver finds those of its gas, or of what lies behind\n"
+        "its walls of triangles.\n",
+        couple_options(), more,
+        "Examples:\n"
+        "  fibrad couple bed.csv --precice precice-config.xml --participant Bed --emissivity 0.8 \\\n"
+        "      --temperature 300 --ambient 300 --heat-capacity 800 --density 2500 \\\n"
+        "      --wall mesh:Tube.stl:temperature=300:emissivity=0.7 -o 'bed.*.vtp' --times every:60\n");
     return STATUS_OK;
 }
 
-/* What is needed, in the words of this command. */
+/* Checks what this command needs. */
 static int check_couple(struct couple *c) {
     struct heat *h = &c->heat;
     struct exchange *e = &c->exchange;
@@ -103,7 +105,7 @@ static int check_couple(struct couple *c) {
     if (status) return status;
     if (e->gives_gas && !e->gives_film && !h->film.coefficient.given)
         return message_at(STATUS_USAGE, e->file, 0,
-                          "particles read no Heat-Transfer-Coefficient; --convection H gives one");
+                          "particles read a Temperature but no Heat-Transfer-Coefficient; --convection H gives one");
     if (e->gives_film && !e->gives_gas)
         return message_at(STATUS_USAGE, e->file, 0, "particles read a Heat-Transfer-Coefficient but no Temperature");
     if (e->gives_gas && (h->film.gas.given || h->film.flux > 0))

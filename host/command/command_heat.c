@@ -139,7 +139,7 @@ int heat_check(struct heat *h, const char *command) {
         return message(STATUS_USAGE, "--clump: %s; leave out %s",
                        h->solid.given ? "clumps have one temperature each" : "light on clumps is not computed",
                        h->solid.given ? "--solid-conductivity" : "--irradiate");
-    if (!h->emissivities.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad heat --help");
+    if (!h->emissivities.given) return message(STATUS_USAGE, "--emissivity is missing; see fibrad %s --help", command);
     if (h->error > 0 && counted)
         return message(
             STATUS_USAGE,

@@ -8,16 +8,16 @@
 /* State of a run in time. */
 struct time_run {
     struct heat *heat;
-    struct bed bed;              /* as it is written: its frame is the number of the output */
-    fibrad_heat_sources sources; /* as they change with time */
+    struct bed bed;              /* what outputs show: its frame is the number of the output */
+    fibrad_heat_sources sources; /* at m->now */
     double square_metres;        /* square of the bed's unit of length [m2] */
     fibrad_span span;
     fibrad_law law;
-    double begun;                                     /* of the clock, for the time of computing [s] */
+    double begun;                                     /* [s] of the clock, when the run began */
     double now, next;                                 /* [s] since the beginning; the end of the span */
     double shown;                                     /* [s] time of the last powers in heat->result */
     double wall[WALLS_MAX];                           /* temperatures of walls now [K] */
-    double wall_next[WALLS_MAX], wall_end[WALLS_MAX]; /* [K] at the end of the span: given, found */
+    double wall_next[WALLS_MAX], wall_end[WALLS_MAX]; /* [K] at the end of the span: as given; as found */
     double surroundings_next;                         /* [K] at the end of the span */
     double wall_energy[WALLS_MAX];                    /* gained by walls during the last span [J] */
     double energy[WALLS_MAX];                         /* gained by walls since the beginning [J] */
@@ -35,25 +35,26 @@ struct time_run {
     uint32_t *store_of;               /* [spheres] */
     double *melted, *stored, *gained; /* [spheres] of the span; [J]; [J] since the beginning */
     double wall_capacity[WALLS_MAX];  /* [J/K] */
-    double wall_power[WALLS_MAX];     /* of powers at one time; NaN where heat is stored */
+    double wall_power[WALLS_MAX];     /* for the solution of time_write; NaN where heat is stored */
     double held_energy;               /* gained by held spheres since the beginning [J] */
 };
 
-/* Begins a run at 0 s with a bed of heat_begin: finds what spheres store, traces beams, absorbs light. m: zeroed but
- * for m->heat; it must stay where it is. End it also after an error. Status 0, STATUS_USAGE, STATUS_INPUT naming the
- * line of a sphere, or as bed_options_status. */
+/* Begins a run at 0 s with a bed of heat_begin: finds what spheres store, traces beams, and absorbs light. m is zeroed
+ * except for m->heat, and must not move. Call time_end also after an error. Status 0, STATUS_USAGE, STATUS_INPUT with
+ * the line of a sphere, or as bed_options_status. */
 int time_begin(struct time_run *m);
 void time_end(struct time_run *m);
 
-/* Goes to another time. time_try only changes the arrays of m->span: with these as they were, it may be called again.
- * time_keep then makes that time `now`, and adds what was gained. Status as time_begin. */
+/* Goes from m->now to a later time. time_try changes m->span and the arrays to which it points. If the caller sets the
+ * temperatures and melted fractions back, it may call time_try again. time_keep then makes that time `now`, and adds up
+ * what was gained. Status as time_begin. */
 int time_try(struct time_run *m, double time);
 void time_keep(struct time_run *m);
 
 /* Computes the powers at m->now, and writes all outputs. */
 int time_write(struct time_run *m);
 
-/* Ends a run that has come to m->now: draws the picture, warns, and prints the summary. Status 0 or STATUS_FILE. */
+/* Reports a run from 0 s to m->now: draws the picture, warns, and prints the summary. Status 0 or STATUS_FILE. */
 int time_report(struct time_run *m);
 
 #endif

@@ -7,22 +7,22 @@
 #include "heat/time_run.h"
 #include "partner/partner.h"
 
-/* When a window is repeated, its result must change smoothly with what the partner gives. So it then has equal steps,
- * as many as it took the first time but no more than this, and powers have a smaller residual. */
+/* The result of a time window that is repeated must change smoothly with what the partner gives. So repeats have equal
+ * steps, as many as the first try took, but at most this many. The residual of powers is smaller then. */
 enum { REPEATED_STEPS = 4 };
 #define REPEATED_RESIDUAL 1e-9
 
-#define FILM_LEAST 1e-6 /* [W/(m2 K)] stands for 0: the face is insulated */
+#define FILM_LEAST 1e-6 /* [W/(m2 K)] stands for 0, which would mean no film: the face is nearly insulated */
 
 struct coupling {
     struct time_run run;
     struct exchange *exchange;
-    double *side[6];         /* [2 triangles] each, as the library has them */
-    double *saved;           /* [2 spheres] temperatures and melted fractions at the beginning of the window */
+    double *side[6], *saved; /* side[SIDE_...]: [2 triangles] each; saved: [2 spheres] temperatures and melted fractions
+                                at the beginning */
     double *gas_begun;       /* [spheres] [K] */
     double every, written;   /* [s] from one output to the next; time of the last one */
-    uint64_t windows, tries; /* tries: of the window in hand */
-    size_t points;           /* of the picture, at its beginning */
+    uint64_t windows, tries; /* tries: of the present time window */
+    size_t points;           /* of the picture, at the beginning of that window */
 };
 enum { SIDE_BEGUN, SIDE_END, SIDE_FILM, BEHIND_BEGUN, BEHIND_END, SIDE_ENERGY };
 
@@ -44,7 +44,7 @@ static int choose_walls(struct exchange *e) {
     return STATUS_OK;
 }
 
-/* A wall whose faces are exchanged has one emissivity above 0, and a temperature with which it begins. */
+/* A wall whose faces are exchanged has an emissivity above 0, and a temperature at which it begins. */
 static int check_walls(const struct heat *h, const struct exchange *e) {
     for (uint32_t k = 0; k < h->walls.count; ++k) {
         const char *name = wall_name(&h->walls, k);
@@ -52,10 +52,12 @@ static int check_walls(const struct heat *h, const struct exchange *e) {
         if (isnan(h->values.wall_temperature[k]) || h->values.insulated[k])
             return message(STATUS_USAGE, "--wall: %s has faces of %s and needs the temperature at which it begins, %s",
                            name, e->name, "temperature=300 for example");
+        if (!(h->wall_emissivity[k] > 0))
+            return message(STATUS_USAGE, "--wall: %s has faces of %s and needs an emissivity above 0", name, e->name);
         if (h->walls.said[k].given & (WALL_CAPACITY | WALL_CONVECTION))
             return message(STATUS_USAGE,
-                           "--wall: %s has faces of %s, which stores and carries away its heat; leave "
-                           "out capacity and convection",
+                           "--wall: %s has faces of %s, which stores and carries away its heat; leave out capacity and "
+                           "convection",
                            name, e->name);
     }
     return STATUS_OK;
@@ -106,8 +108,8 @@ static int make_particles(struct heat *h, struct exchange *e) {
     return STATUS_OK;
 }
 
-/* A wall that the partner has is not one body of one temperature, to which a contact could conduct: such contacts carry
- * nothing. A contact of a sphere with itself is none. */
+/* Contacts conduct to walls of one temperature. A wall that the partner has is none, so its contacts carry nothing:
+ * they become contacts of a sphere with itself, which the kernel ignores. */
 static void leave_contacts(struct heat *h, const struct exchange *e) {
     uint32_t left = 0;
     for (uint32_t k = 0; k < h->touching.n; ++k) {
@@ -141,9 +143,9 @@ static int make_sides(struct coupling *c) {
     return STATUS_OK;
 }
 
-/* ---- one window -------------------------------------------------------------------------------------------------- */
+/* ---- one time window --------------------------------------------------------------------------------------------- */
 
-/* Sets what the partner gives, at the end of the window. In the first window it counts from the beginning. */
+/* Sets what the partner gives at the end of the time window. In the first one this holds from the beginning on. */
 static void set_given(struct coupling *c) {
     struct exchange *e = c->exchange;
     struct heat *h = c->run.heat;
@@ -170,14 +172,15 @@ static double face_temperature(const double side[2]) {
     return pow((gsl_pow_4(side[0]) + gsl_pow_4(side[1])) / 2, 0.25);
 }
 
-/* By how much the mean power to the gas falls if the gas is 1 K hotter at the end of the window. Its temperature grows
- * evenly, but in the first window it is constant; a sphere of the capacity [J/K] follows in the meantime. */
+/* [W/K] By how much the mean power to the gas falls if the gas is 1 K hotter at the end of the time window. In the
+ * first time window the temperature of the gas is constant, in later ones it changes evenly. A sphere of the capacity
+ * [J/K] follows the gas. */
 static double mean_conductance(const struct coupling *c, double film, double capacity) {
     const double x = c->run.store ? 0 : film * c->exchange->length / capacity;
     return c->windows > 0 ? film / (2 + x / 1.5) : film / (1 + x / 2);
 }
 
-/* Takes what the bed has found at the end of a window. */
+/* Takes what the bed has found at the end of a time window. */
 static void take_found(struct coupling *c) {
     struct exchange *e = c->exchange;
     const fibrad_span *span = &c->run.span;
@@ -194,7 +197,7 @@ static void take_found(struct coupling *c) {
         e->particles.conductance[i] = mean_conductance(c, films->film[i] / films->per_watt, span->capacity[i]);
 }
 
-/* Saves the state at the beginning of a window, or goes back to it. */
+/* Saves the state at the beginning of a time window, or goes back to it. */
 static void keep_state(struct coupling *c, bool back) {
     const fibrad_span *span = &c->run.span;
     const size_t n = c->run.heat->bed->n;
@@ -221,7 +224,7 @@ static int try_window(struct coupling *c) {
     return status;
 }
 
-/* Ends a window: what is at its end is at the beginning of the next one. */
+/* Ends a time window: values at its end are those at the beginning of the next one. */
 static void end_window(struct coupling *c) {
     struct time_run *m = &c->run;
     struct heat *h = m->heat;
@@ -256,7 +259,7 @@ static int write_now(struct coupling *c) {
     return time_write(&c->run);
 }
 
-/* Goes through all windows. A status of the bed is returned; one of the partner is *ended. */
+/* Goes through all time windows. Returns the status of the bed. *ended: the status of the partner. */
 static int run_windows(struct coupling *c, const struct partner *partner, int *ended) {
     struct exchange *e = c->exchange;
     int status = STATUS_OK;
@@ -289,7 +292,7 @@ int couple_run(struct heat *h, const struct partner *partner, struct exchange *e
     if (!status) status = make_sides(&c);
     if (!status) status = partner->begin(e);
     if (!status) status = run_windows(&c, partner, ended);
-    if (c.tries > 0) keep_state(&c, true); /* the partner has failed within a window */
+    if (c.tries > 0) keep_state(&c, true); /* the partner has failed within a time window */
     if (!status && c.windows > 0 && c.written < c.run.now) status = write_now(&c);
     if (!status && c.windows > 0) status = time_report(&c.run);
     progress_stop(&h->options.progress);

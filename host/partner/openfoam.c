@@ -3,7 +3,7 @@
  * OpenFOAM and the bed take turns. OpenFOAM.lock in the folder of the files says whose turn it is:
  *
  *     OpenFOAM.lock      T.out      turn
- *     there              any        OpenFOAM's: it goes through a window, writes T.out and removes the lock
+ *     there              any        OpenFOAM's: it goes through a time window, writes T.out and removes the lock
  *     not there          there      ours: we write T.in, then the lock
  *     not there          not yet    ours: with initByExternal OpenFOAM waits for a first T.in
  *     "done", or gone    gone       nobody's: OpenFOAM has ended
@@ -11,7 +11,8 @@
  * GROUP/ or REGION/GROUP/ in that folder has the other files. patchPoints and patchFaces have the points and the
  * corners of faces, patch by patch. T.out has a row `area Twall qDot htc` a face [m2, K, W/m2, W/(m2 K)]: qDot goes
  * into the fluid, and htc is qDot over the difference to the temperature of the cell at the face. T.in has rows `value
- * gradient fraction`. A lock with `action=writeNow` makes OpenFOAM end after another step, and another turn of ours.
+ * gradient fraction`. With `action=writeNow` in the lock OpenFOAM makes one more step and gives us one more turn, then
+ * it ends.
  *
  * Source: OpenFOAM v1912, documentation of externalCoupled and externalCoupledTemperature, and what they do. */
 #include <errno.h>
@@ -28,7 +29,7 @@
 #include "text/read_number.h"
 
 #define AREA_TOLERANCE 0.02     /* of areas that should be the same */
-#define FIRST_FILM     10       /* [W/(m2 K)] in a first window in which no face has one */
+#define FIRST_FILM     10       /* [W/(m2 K)] in a first time window in which no face has a film */
 #define TIMEOUT_OF_END 60       /* [s] after an error */
 #define LONGEST_PAUSE  50000000 /* [ns] between two looks at the lock */
 
@@ -98,7 +99,7 @@ static int look_at_lock(struct openfoam *foam, enum turn *turn) {
     else if (foam->begun)
         *turn = NOBODYS;
     else if (stat(foam_file(foam->group, "patchFaces"), &faces) == 0 && time(NULL) > faces.st_mtime + 1)
-        *turn = FIRST; /* now patchFaces is complete. OpenFOAM looks for our files once a second */
+        *turn = FIRST; /* patchFaces is a second old, and thus complete */
     foam->begun = foam->begun || *turn == OURS;
     return STATUS_OK;
 }
@@ -112,7 +113,7 @@ static int wait_for_turn(const struct exchange *exchange, enum turn *turn) {
     while (!(status = look_at_lock(foam, turn)) && *turn == THEIRS && !(status = interrupt_status())) {
         foam->silent = waited > exchange->timeout;
         if (foam->silent)
-            return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; has it ended?", foam->folder,
+            return message(STATUS_FILE, "%s: OpenFOAM has not answered for %g s; is it running?", foam->folder,
                            exchange->timeout);
         nanosleep(&pause, NULL);
         waited += 1e-9 * (double)pause.tv_nsec;
@@ -143,7 +144,7 @@ static int next_number(struct numbers *from, double *value, bool *more) {
         int status = lines_next_text(lines, &is_line);
         if (more) *more = is_line;
         if (status || (!is_line && more)) return status;
-        if (!is_line) return lines_fault(lines, "the file ends before its last face");
+        if (!is_line) return lines_fault(lines, "the file ends too early");
         from->next = from->fields.n = 0;
         if (lines_comment(lines))
             from->fluid = from->fluid || strstr(lines->text, "Tfluid");
@@ -219,7 +220,7 @@ static int read_faces(struct openfoam *foam) {
 /* ---- our triangles at these faces -------------------------------------------------------------------------------- */
 
 struct along {
-    double at; /* [m] along a direction that is hardly at right angles to a wall */
+    double at; /* [m] along a direction that is at right angles to few walls */
     int face;
 };
 
@@ -258,7 +259,7 @@ static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
     const int status = find_nearest_faces(faces, foam);
     if (status) return status;
     double ours = 0, theirs = 0;
-    const double *first = NULL; /* what has no partner */
+    const double *first = NULL; /* [m] the first centre without a match */
     uint32_t far = 0, bare = 0;
     for (uint32_t t = 0; t < faces->n; ++t) {
         ours += faces->area[t];
@@ -275,7 +276,7 @@ static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
     const double digits = log10(ours / theirs) / 2; /* units of length differ by 10^2 or more */
     const bool units = fabs(digits) > 1.5 && fabs(digits - round(digits)) < AREA_TOLERANCE / 2;
     if (units || !(far || bare || fabs(ours - theirs) <= AREA_TOLERANCE * theirs))
-        snprintf(why, sizeof why, "the faces have %g m2, and the triangles of the bed %g m2", theirs, ours);
+        snprintf(why, sizeof why, "the faces have %g m2, but the triangles of the bed have %g m2", theirs, ours);
     else if (far)
         snprintf(why, sizeof why, "%u of %u triangles of the bed are at no face, the first at (%g, %g, %g) m", far,
                  faces->n, first[0], first[1], first[2]);
@@ -283,7 +284,7 @@ static int match_faces(const struct exchange *exchange, struct openfoam *foam) {
         snprintf(why, sizeof why, "%u of %d faces are at no triangle of the bed, the first at (%g, %g, %g) m", bare,
                  foam->n, first[0], first[1], first[2]);
     return *why ? message_at(STATUS_INPUT, foam_file(foam->group, "patchFaces"), 0, "%s%s", why,
-                             units ? ": these are two units of length"
+                             units ? "; their units of length differ"
                              : far ? "; see --faces"
                                    : "")
                 : STATUS_OK;
@@ -305,10 +306,10 @@ static int read_flux(struct numbers *from, struct patch_face *face) {
     face->behind = good && !from->fluid ? wall - flux / film : wall;
     if (good) face->film = film;
     if (!(wall > 0 && face->behind > 0 && face->behind < INFINITY))
-        return lines_fault(&from->lines, "wall and fluid have %g K and %g K; above 0 K is expected", wall,
+        return lines_fault(&from->lines, "wall and fluid have %g K and %g K; temperatures above 0 K are expected", wall,
                            face->behind);
     if (!(fabs(area - face->area) <= AREA_TOLERANCE * face->area))
-        return lines_fault(&from->lines, "the face has %g m2, and %g m2 in patchFaces, which may be of an earlier run",
+        return lines_fault(&from->lines, "the face has %g m2, but %g m2 in patchFaces, which may be of an earlier run",
                            area, face->area);
     face->area = area;
     return STATUS_OK;
@@ -321,7 +322,7 @@ static int read_fluxes(struct openfoam *foam) {
     int status = lines_open(&from.lines, foam_file(foam->group, "T.out"));
     for (int k = 0; !status && k < foam->n; ++k) status = read_flux(&from, &foam->face[k]);
     if (!status) status = next_number(&from, &beyond, &more);
-    if (!status && more) status = lines_fault(&from.lines, "patchFaces has %d faces only", foam->n);
+    if (!status && more) status = lines_fault(&from.lines, "a row too many; patchFaces has %d faces", foam->n);
     numbers_close(&from);
     return status;
 }
@@ -338,7 +339,7 @@ static void average_found(const struct exchange *exchange) {
     }
 }
 
-/* Writes T.in, and then the lock. After an error in `begin` faces have no temperature yet and are insulated. */
+/* Writes T.in, and then the lock. After an error in `begin` faces have no temperature yet: these become insulated. */
 static int write_rows(const struct openfoam *foam, const char *text) {
     struct output rows, lock;
     int status = output_open(&rows, foam_file(foam->group, "T.in"));

@@ -1,9 +1,8 @@
 /* precice.c - preCICE as the partner: its library is loaded when a run asks for it. SPDX-License-Identifier: MIT
  *
- * The configuration says which meshes the participant provides, and which data it reads and writes there. Ends of names
- * say what they are. A mesh is that of a wall, NAME or ...-NAME, or of the particles, ...Particles or ...Spheres. Data
- * end in Temperature, Sink-Temperature, Heat-Transfer-Coefficient, Power or Heat-Flux.
- * Source: preCICE 3, preciceC.h. */
+ * The configuration says which meshes the participant provides, and which data it reads and writes there. Ends of
+ * names, behind - or _, say what they are. A mesh ends in the name of a wall, or in Particles or Spheres. Ends of data
+ * are in `kinds`. Source: preCICE 3, preciceC.h. */
 #include <ctype.h>
 #include <dlfcn.h>
 #include <math.h>
@@ -49,7 +48,7 @@ enum { KIND_TEMPERATURE, KIND_SINK, KIND_FILM, KIND_POWER, KIND_FLUX, KIND_CONDU
 static const char *const kinds[KINDS] = {
     "Temperature", "Sink-Temperature", "Heat-Transfer-Coefficient", "Power", "Heat-Flux", "Conductance", "Source"};
 
-/* Data of a mesh of the participant, or the mesh itself if `data` is empty. */
+/* Data of a mesh of the participant. If `data` is empty: the mesh itself. */
 struct item {
     char mesh[NAME], data[NAME];
     bool written;
@@ -99,13 +98,15 @@ static int add_item(struct exchange *e, const struct xml_tag *tag, const char *m
         {1 << KIND_TEMPERATURE | 1 << KIND_FILM,
          1 << KIND_POWER | 1 << KIND_CONDUCTANCE | 1 << KIND_SOURCE | 1 << KIND_TEMPERATURE}};
     if (item.data[0] && !(allowed[particles][item.written] >> item.kind & 1))
-        return message_at(STATUS_USAGE, e->file, 0,
-                          "%s %s %s; faces read Temperature, or Heat-Transfer-Coefficient and Sink-Temperature, and "
-                          "write Power, Heat-Flux or Temperature; particles read Temperature and "
-                          "Heat-Transfer-Coefficient, and write Power, Source, Conductance or Temperature",
-                          item.mesh, item.written ? "writes" : "reads", item.data);
+        return message_at(
+            STATUS_USAGE, e->file, 0, "%s %s %s; %s", item.mesh, item.written ? "writes" : "reads", item.data,
+            particles ? "particles read Temperature and Heat-Transfer-Coefficient, and write Power, Source, "
+                        "Conductance or Temperature"
+                      : "faces read Temperature, or Heat-Transfer-Coefficient and Sink-Temperature, and "
+                        "write Power, Heat-Flux or Temperature");
     if (p->items == ITEMS)
-        return message_at(STATUS_USAGE, e->file, 0, "%s has more than %d data", e->participant, ITEMS);
+        return message_at(STATUS_USAGE, e->file, 0, "the participant %s has more than %d meshes and data",
+                          e->participant, ITEMS);
     if (particles && !item.written && item.data[0]) {
         e->gives_gas = e->gives_gas || item.kind == KIND_TEMPERATURE;
         e->gives_film = e->gives_film || item.kind == KIND_FILM;
@@ -140,7 +141,7 @@ static int take_config(struct exchange *e, const char *text, size_t size) {
         return message_at(STATUS_USAGE, e->file, 0, "there is no participant %s; there %s %s", e->participant,
                           others[0] ? "are" : "is", others[0] ? others : "none");
     return p->items > 0 ? STATUS_OK
-                        : message_at(STATUS_USAGE, e->file, 0, "the participant %s has no mesh", e->participant);
+                        : message_at(STATUS_USAGE, e->file, 0, "the participant %s provides no mesh", e->participant);
 }
 
 static int precice_plan(struct exchange *e) {
@@ -176,29 +177,30 @@ static int precice_choose(struct exchange *e) {
         if (item->wall != PARTICLES)
             e->exchanged[item->wall] = true;
         else if (!is_of_particles(item->mesh))
-            return message_at(STATUS_USAGE, e->file, 0,
-                              "the mesh %s ends in the name of no wall of triangles, and not in Particles", item->mesh);
+            return message_at(
+                STATUS_USAGE, e->file, 0,
+                "the name of the mesh %s ends neither in the name of a wall of triangles nor in Particles", item->mesh);
         if (item->wall != PARTICLES && reads(p, item->mesh, KIND_FILM) != reads(p, item->mesh, KIND_SINK))
             return message_at(STATUS_USAGE, e->file, 0,
-                              "%s reads only one of Heat-Transfer-Coefficient and Sink-Temperature", item->mesh);
+                              "the mesh %s reads only one of Heat-Transfer-Coefficient and Sink-Temperature",
+                              item->mesh);
     }
     return STATUS_OK;
 }
 
-/* ---- calls, which abort the program if preCICE has an error -------------------------------------------------------
- */
+/* ---- calls: preCICE aborts the program after an error ------------------------------------------------------------ */
 
 static sigjmp_buf stopped;
 
 static struct sigaction before_alarm;
 
-/* Two seconds after an interrupt the alarm ends the program. */
+/* Leaves a call. After an interrupt the alarm, two seconds later, ends the program by the handler that was there. */
 static void leave_call(int signal) {
     if (signal == SIGALRM && interrupt_status()) before_alarm.sa_handler(signal);
     siglongjmp(stopped, signal);
 }
 
-/* Has standard output go where standard error goes, or back. Returns where it went. */
+/* Sends standard output to the file `to`. Returns a copy of the file to which it went before. */
 static int redirect_output(int to) {
     fflush(stdout);
     const int before = dup(STDOUT_FILENO);
@@ -206,8 +208,9 @@ static int redirect_output(int to) {
     return before;
 }
 
-/* Calls a function of this file that calls preCICE. preCICE prints its own error, and aborts: then this says who ended.
- * A partner that says nothing in exchange->timeout ends the run, too. The log of preCICE goes to standard error. */
+/* Calls a function of this file that calls preCICE. After an error preCICE prints it and aborts. Then this function
+ * prints that preCICE has ended. If preCICE does not return within exchange->timeout, the run ends, too. The log of
+ * preCICE goes to standard error. */
 static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     struct sigaction leave = {.sa_handler = leave_call}, before_abort;
     const int output = redirect_output(STDERR_FILENO);
@@ -231,7 +234,7 @@ static int guarded(struct exchange *e, int (*call)(struct exchange *)) {
     return status;
 }
 
-/* The vertices of an item: first and number among faces, then particles. */
+/* The first vertex of an item, and their number n. All faces come before the particles. */
 static uint32_t first_of(const struct exchange *e, const struct item *item, uint32_t *n) {
     const struct exchange_faces *f = &e->faces;
     *n = item->wall == PARTICLES ? e->particles.n : f->first[item->wall + 1] - f->first[item->wall];
@@ -272,9 +275,8 @@ static int read_item(struct exchange *e, const struct item *item) {
     p->library.read(item->mesh, item->data, (int)n, p->id + first, e->length, to);
     for (uint32_t k = 0; k < n; ++k)
         if (item->kind == KIND_FILM ? !(to[k] >= 0 && to[k] < INFINITY) : !(to[k] > 0 && to[k] <= TEMPERATURE_MAX))
-            return message(STATUS_INPUT, "preCICE gives %s of %s: %g at vertex %u, which is no %s", item->data,
-                           item->mesh, to[k], k,
-                           item->kind == KIND_FILM ? "heat transfer coefficient" : "temperature in kelvins above 0");
+            return message(STATUS_INPUT, "preCICE gives %s of %s as %g at vertex %u; %s is expected", item->data,
+                           item->mesh, to[k], k, item->kind == KIND_FILM ? "0 or more" : "a temperature above 0 K");
     return STATUS_OK;
 }
 
@@ -287,7 +289,7 @@ static int connect_now(struct exchange *e) {
         const uint32_t first = first_of(e, item, &n);
         if (item->data[0]) continue;
         if (p->library.dimensions(item->mesh) != 3)
-            return message_at(STATUS_USAGE, e->file, 0, "the mesh %s has not 3 dimensions", item->mesh);
+            return message_at(STATUS_USAGE, e->file, 0, "the mesh %s must have 3 dimensions", item->mesh);
         p->library.vertices(item->mesh, (int)n,
                             item->wall == PARTICLES ? e->particles.centre[0] : e->faces.centre[first], p->id + first);
     }
@@ -301,7 +303,7 @@ static int read_now(struct exchange *e) {
     int status = STATUS_OK;
     e->length = 0;
     if (!p->library.ongoing()) return STATUS_OK;
-    e->implicit = p->library.wants_saving() || e->implicit;
+    (void)p->library.wants_saving(); /* asked at each window; the bed saves its state anyway */
     e->length = p->library.longest();
     for (size_t k = 0; k < p->items && !status; ++k)
         if (p->item[k].data[0] && !p->item[k].written) status = read_item(e, &p->item[k]);
@@ -337,7 +339,7 @@ static int load_library(struct precice *p) {
     memcpy(&p->library, function, sizeof function);
     const char *version = p->library.version();
     if (strncmp(version, "3.", 2) == 0) return STATUS_OK;
-    return message(STATUS_FILE, "--precice: this is preCICE %.*s; versions 3 are known", (int)strcspn(version, ";"),
+    return message(STATUS_FILE, "--precice: this is preCICE %.*s; version 3 is needed", (int)strcspn(version, ";"),
                    version);
 }
 
@@ -359,8 +361,8 @@ static int precice_give(struct exchange *e, bool *again) {
     return status;
 }
 
-/* After an error the destructors of preCICE, which run at the end of the program, would fail. Partners see that their
- * connections end. */
+/* After an error the destructors of preCICE would fail at the end of the program: _exit leaves them out. Partners see
+ * that their connections end. */
 static int precice_end(struct exchange *e, int status) {
     struct precice *p = e->state;
     if (!p) return status;

@@ -7,10 +7,11 @@
  *            clumps; areas and volumes                      fibrad_bed_bodies, _surfaces
  *   factors  view factors and exchange factors of a bed     fibrad_bed_factors, fibrad_bed_matrix_free
  *            area and row of a wall; a bed's factors        fibrad_bed_wall_area, _wall_row, fibrad_view_factors
- *   heat     net powers and temperatures                    fibrad_bed_solve; fibrad_bed_sides: of triangles
+ *   heat     net powers and temperatures                    fibrad_bed_solve
+ *            fluxes and temperatures of triangles           fibrad_bed_sides
  *            numbers of directions, points and patches      fibrad_bed_beams
  *            light from outside, first hits included        fibrad_bed_shine
- *            temperatures in time                           fibrad_bed_advance
+ *            temperatures and energies in time              fibrad_bed_advance
  *   contacts which spheres touch, and what they conduct     fibrad_bed_contacts, fibrad_contacts_conduct
  *   kernel   memory of the heap, sizes of structures        fibrad_heap_resize, fibrad_host_sizeof
  *
@@ -270,7 +271,7 @@ typedef struct fibrad_law {
  *   Cost     that of the sweeps over the threads */
 int fibrad_bed_solve(fibrad_bed *bed, const fibrad_heat_sources *sources, fibrad_law *law, fibrad_heat_result *result);
 
-/* The last solution on the sides of triangles: fibrad_heat_read_sides.
+/* Fluxes and temperatures of the sides of triangles in the last solution, as fibrad_heat_read_sides gives them.
  *   Output   flux[2 triangles], temperature[2 triangles]: may be NULL
  *   Errors   _ARGUMENT
  *            _STATE: there is no solution of the bed as it is */
@@ -344,9 +345,10 @@ typedef struct fibrad_store {
  * each sphere that has melted. A sphere of infinite capacity is held: its temperature stays. held_energy is what held
  * spheres gain, their powers included.
  *
- * side_energy of the sides of a wall adds up to its wall_energy, and to the light that it absorbs if sources->absorbed
- * is set. What contacts and a film of the wall bring is spread by area. convected_energy adds up to -gas_energy if no
- * wall has a film. Both sums are right to rounding.
+ * The side_energy of all sides of a wall adds up to its wall_energy. What the wall gains through contacts and its film
+ * is spread over its sides by area. If sources->absorbed is set, the sum has the light that the wall absorbs, and
+ * leaves out contacts and film. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to
+ * rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
  * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own, no
@@ -376,7 +378,7 @@ typedef struct fibrad_span {
     double gas_power, gas_energy; /* W and J, out: the same of the gas of all films */
     double held_energy;           /* J, out: gained by held spheres during the span */
     double *convected_energy;     /* J, [spheres], out: gained from gas during the span; may be NULL */
-    double *side_energy;          /* J, [2 triangles], out: gained by radiation during the span; may be NULL */
+    double *side_energy;          /* J, [2 triangles], out: gained during the span; may be NULL */
     double *side_end;             /* K, [2 triangles], out: temperatures at the end; may be NULL */
     double *stored;               /* J, [spheres], out: heat stored during the span; of held spheres 0; may be NULL */
     fibrad_law *law;              /* called in each stage; NULL: emissivities are constant */
@@ -396,8 +398,8 @@ typedef struct fibrad_span {
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * or if there are contacts, films or clumps. They do, too, if the temperature of a wall or of a side is to be found, as
- * that of a wall with a capacity is, or if convected_energy, side_energy or side_end is wanted.
+ * or if there are contacts, films or clumps. They do, too, if the temperature of a wall or of a side is to be found.
+ * Those of walls with a capacity are. They also do if convected_energy, side_energy or side_end is wanted.
  *
  * The members of a clump begin at one temperature, equally melted. They have the same store. All or none are held.
  *

@@ -1,6 +1,6 @@
 #!/bin/sh
 # check_openfoam.sh - `fibrad couple` beside OpenFOAM: a hot bed in a box, and air that rises beside one of its walls. In
-# 100 windows the bed gives what the air takes. Takes two minutes: OpenFOAM looks for the bed's files once a second.
+# 100 time windows the bed gives what the air takes. Takes two minutes: OpenFOAM looks for the bed's files once a second.
 # SPDX-License-Identifier: MIT
 set -u
 : "${BUILD:=build}"
@@ -43,6 +43,6 @@ awk '
 FILENAME != "bed.json" { if ($2 == "wall") { air += $5 * .01; steps++ }; next }
 { for (rest = $0; match(rest, /"faces_J": [-+.0-9e]+/); rest = substr(rest, RSTART + RLENGTH)) { bed += substr(rest, RSTART + 11, RLENGTH - 11); windows++ } }
 END {
-    printf "%d windows, %d steps: the bed gives %.5g J, the air takes %.5g J, %.2g %% less\n", windows, steps, bed, air, 100 * (1 - air / bed)
+    printf "%d time windows, %d steps: the bed gives %.5g J, the air takes %.5g J, %.2g %% less\n", windows, steps, bed, air, 100 * (1 - air / bed)
     exit !(windows == 100 && steps == 100 && bed > 10 && (bed - air) ^ 2 < (0.01 * bed) ^ 2)
 }' case/postProcessing/heat/0/*.dat bed.json

@@ -4,10 +4,10 @@
  * At each vertex of a mesh the other solver conducts LEAK [W/K] to AROUND. Where the bed writes Power and reads
  * Temperature, it gives T = AROUND + power/LEAK: a wall for faces, a stirred gas for particles. Data that end in
  * Sink-Temperature are AROUND, those that end in Coefficient are FILM [W/(m2 K)]. What it has received is appended to
- * the file RECEIVED, a line a window: energies [J] of meshes in the order in which they were set.
+ * the file RECEIVED, a line a time window: energies [J] of meshes in the order in which they were set.
  *
- * Environment, beside these: WINDOWS, LENGTH [s], IMPLICIT (1: windows are repeated until temperatures settle), FAULT
- * (what goes wrong, in window 1: die, zero), VERSION. */
+ * Environment, beside these: WINDOWS, LENGTH [s], IMPLICIT (1: time windows are repeated until temperatures settle),
+ * FAULT (what goes wrong, in time window 1: die, zero), VERSION. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-"""Writes bed.csv, 152 spheres, and walls.stl, a closed tube of 24 sides: its solids are tube, floor and lid. Metres."""
+"""Writes bed.csv with 152 spheres, and walls.stl, a closed tube of 24 sides with the solids tube, floor and lid. Lengths
+are in metres."""
 import math
 
 SIDES, RINGS, RADIUS, HEIGHT = 24, 12, 0.055, 0.165

@@ -1,10 +1,10 @@
 /* partners.c - two solvers beside the bed: a wall that conducts, and gas in plug flow. SPDX-License-Identifier: MIT
  *
  *     cc partners.c -lprecice -lm -o partners
- *     ./partners Wall temperatures.xml & ./partners Gas temperatures.xml &
- *     ./partners Wall films.xml films & ./partners Gas films.xml films &
+ *     ./partners Wall temperatures.xml & ./partners Gas temperatures.xml &    the wall gives temperatures, or
+ *     ./partners Wall films.xml films & ./partners Gas films.xml films &      films, and the gas reads conductances
  *
- * Each is a participant of preCICE with one mesh. A solver of your own calls the same functions. */
+ * Each process is a participant of preCICE with one mesh. A solver of your own calls the same functions. */
 #include <math.h>
 #include <precice/preciceC.h>
 #include <stdio.h>
@@ -16,7 +16,7 @@ enum { ROUND = 16, ALONG = 10, LAYERS = 8, SLICES = 16 };
 #define HEIGHT .165  /* [m] */
 #define COLD   300.0 /* [K] outside, at the inlet, and at the beginning */
 
-/* A solver: vertices, what it reads at them, and how one window changes its state. */
+/* A solver: its vertices, the data that it reads and writes there, its state, and how a time window changes them. */
 struct solver {
     const char *mesh, *reads[3], *writes[3];
     int n;
@@ -25,9 +25,9 @@ struct solver {
     void (*advance)(struct solver *s, double dt, double *lost);
 };
 
-/* Conduction through the tube in one dimension at each vertex, by implicit Euler. Its inner side gains `power`. That
- * side has the temperature T = sink + power/(h area) at the end of the window: the wall gives T, and also h and sink,
- * with which the bed finds T itself. */
+/* Conduction through the tube in one dimension at each vertex, by implicit Euler. Its inner side gains `power`. At the
+ * end of the time window this side has the temperature T = sink + power/(h area). The wall gives T. It also gives h and
+ * sink, with which the bed can find T itself. */
 static void advance_wall(struct solver *s, double dt, double *lost) {
     const double thick = .005, k = 1.5, heat = 2e6, film = 20, dx = thick / LAYERS, between = k / dx;
     const double outside = 1 / (dx / 2 / k + 1 / film), keeps = heat * dx / dt;
@@ -53,8 +53,8 @@ static void advance_wall(struct solver *s, double dt, double *lost) {
         for (int i = 0; i < LAYERS; i++) s->stored += heat * dx * area * (s->state[v][i] - COLD);
 }
 
-/* Gas flows upwards through slices, one vertex each. It gains power, or source - conductance T at its temperature T:
- * then T is near the final one at once. */
+/* Gas flows upwards through slices, one vertex each. At its temperature T it gains source - conductance T, if it reads
+ * conductances, and else `power`. With conductances T is near the final one at once. */
 static void advance_gas(struct solver *s, double dt, double *lost) {
     const double flow = 1.5, *power = s->read[0], *conductance = s->read[1], *source = s->read[2]; /* flow [W/K] */
     double up = COLD;
@@ -83,7 +83,7 @@ int main(int argc, char **argv) {
     static double kept[ROUND * ALONG][LAYERS];
     if (argc != 3 && argc != 4) return 1;
     struct solver *s = strcmp(argv[1], "Gas") == 0 ? &gas : &wall;
-    const int films = argc == 4, first = films && s == &wall, last = first ? 3 : 1; /* of writes */
+    const int films = argc == 4, first = films && s == &wall, last = first ? 3 : 1; /* of `writes`: which are written */
     for (int v = 0; v < s->n; v++) {
         const double angle = 2 * PI * (v % ROUND + .5) / ROUND, r = s == &gas ? 0 : RADIUS;
         s->at[v][0] = r * cos(angle), s->at[v][1] = r * sin(angle);

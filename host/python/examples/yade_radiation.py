@@ -1,10 +1,10 @@
 # yade_radiation.py - spheres and clumps of YADE above a hot floor are heated by radiation. SPDX-License-Identifier: MIT
-"""Run `yade -n -x yade_radiation.py`. YADE's Python must find fibrad. PyRunner calls radiate() at regular steps.
+"""Run `yade -n -x yade_radiation.py`. YADE's Python must find fibrad. PyRunner calls radiate() every EVERY steps.
 Positions, walls, facets and clumps are those of O.bodies. Net powers change the temperatures, which this file keeps by
 the ids of the bodies. All members of a clump have the temperature of their clump.
 
-With a ThermalEngine temperatures are those of its states. Call radiate() after it, and hand_over() before it in each step:
-the engine takes stepFlux [W], above 0 where heat is gained, and then sets it to 0."""
+With a ThermalEngine temperatures are state.temp. Put hand_over() before the engine, in each step, and radiate() after it,
+now and then. The engine takes up stepFlux [W], above 0 where heat is gained, and then sets it to 0."""
 import numpy as np
 
 import fibrad
@@ -14,7 +14,7 @@ CAPACITY, EMISSIVITY = 800.0, 0.8  # J/(kg K)
 EVERY = 2000  # time steps
 
 temperature = {}  # K, by the ids of the spheres and clumps
-given = []  # states of ThermalEngine, and the power of each [W]
+given = []  # pairs of a state and its power [W], for ThermalEngine
 bed = None  # made by the first call, moved by the next ones
 last_time = 0.0
 absorbed = 0.0  # J
@@ -45,6 +45,7 @@ def walls_of(bodies, x):
 
 
 def hand_over():
+    """Gives ThermalEngine the powers of the last radiate()."""
     global absorbed
     for state, watts in given:
         state.stepFlux = watts
@@ -52,6 +53,7 @@ def hand_over():
 
 
 def radiate():
+    """Computes net powers. Changes the temperatures of this file, or keeps the powers for hand_over()."""
     global bed, last_time, absorbed, given
     owner, x, r, states = spheres_of(O.bodies)
     owners, index = np.unique(owner, return_inverse=True)
@@ -62,7 +64,7 @@ def radiate():
     else:
         bed.move(x, r, box=box, walls=walls_of(O.bodies, x))
     thermal = all(hasattr(state, "stepFlux") for state in states)
-    part = r**3 / np.bincount(index, r**3)[index]  # of a member in the heat of its clump
+    part = r**3 / np.bincount(index, r**3)[index]  # share of a member in the heat of its clump
     if thermal:
         now = np.bincount(index, part * [state.temp for state in states])
     else:
