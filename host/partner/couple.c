@@ -151,14 +151,17 @@ static void set_given(struct coupling *c) {
     struct heat *h = c->run.heat;
     const struct exchange_faces *f = &e->faces;
     const bool first = c->windows == 0;
-    for (uint32_t k = 0; k < f->n; ++k)
-        for (size_t s = 2 * (size_t)f->triangle[k]; s < 2 * (size_t)f->triangle[k] + 2; ++s) {
-            const bool film = f->film[k] >= 0; /* not NaN */
-            c->side[SIDE_FILM][s] = film ? fmax(f->film[k], FILM_LEAST) * c->run.square_metres : 0;
+    for (uint32_t k = 0; k < f->n; ++k) {
+        const uint32_t t = f->triangle[k];
+        const bool film = f->film[k] >= 0; /* not NaN */
+        const bool both = h->walls.meshes->front[t] != FIBRAD_NO_WALL && h->walls.meshes->back[t] != FIBRAD_NO_WALL;
+        for (size_t s = 2 * (size_t)t; s < 2 * (size_t)t + 2; ++s) { /* both sides share the film of a face */
+            c->side[SIDE_FILM][s] = film ? fmax(f->film[k], FILM_LEAST) * c->run.square_metres / (both ? 2 : 1) : 0;
             c->side[SIDE_END][s] = film ? NAN : f->temperature[k], c->side[BEHIND_END][s] = f->behind[k];
             if (first || film) c->side[SIDE_BEGUN][s] = c->side[SIDE_END][s];
             if (first) c->side[BEHIND_BEGUN][s] = c->side[BEHIND_END][s];
         }
+    }
     for (uint32_t i = 0; i < e->particles.n && e->gives_gas; ++i) {
         h->films.end[i] = e->particles.gas[i];
         if (first) c->gas_begun[i] = h->films.end[i];
