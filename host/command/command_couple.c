@@ -106,6 +106,10 @@ static int check_couple(struct couple *c) {
     if (e->gives_gas && !e->gives_film && !h->film.coefficient.given)
         return message_at(STATUS_USAGE, e->file, 0,
                           "particles read a Temperature but no Heat-Transfer-Coefficient; --convection H gives one");
+    if (e->takes_power && !e->gives_gas && !h->film.coefficient.given)
+        return message_at(STATUS_USAGE, e->file, 0,
+                          "particles write a power, but read no Temperature; --convection and --gas-temperature give a "
+                          "gas");
     if (e->gives_film && !e->gives_gas)
         return message_at(STATUS_USAGE, e->file, 0, "particles read a Heat-Transfer-Coefficient but no Temperature");
     if (e->gives_gas && (h->film.gas.given || h->film.flux > 0))

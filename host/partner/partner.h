@@ -50,6 +50,7 @@ struct exchange {
     /* of the run */
     const char *name;           /* of the partner: preCICE, OpenFOAM */
     bool gives_gas, gives_film; /* whether the partner gives these at particles */
+    bool takes_power;           /* whether the partner takes what the gas gains there */
     const struct walls *walls;
     bool exchanged[WALLS_MAX]; /* the partner has the faces of this wall */
     struct exchange_faces faces;
@@ -60,7 +61,7 @@ struct exchange {
 
 /* A kind of partner. Functions return a status, and print why they fail. */
 struct partner {
-    /* Called when all options have been read. Sets name, gives_gas and gives_film. */
+    /* Called when all options have been read. Sets name, gives_gas, gives_film and takes_power. */
     int (*plan)(struct exchange *exchange);
     /* Sets `exchanged`. NULL: the walls of wall_names are exchanged, or else all walls that are meshes. */
     int (*choose)(struct exchange *exchange);

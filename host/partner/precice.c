@@ -111,6 +111,7 @@ static int add_item(struct exchange *e, const struct xml_tag *tag, const char *m
         e->gives_gas = e->gives_gas || item.kind == KIND_TEMPERATURE;
         e->gives_film = e->gives_film || item.kind == KIND_FILM;
     }
+    e->takes_power = e->takes_power || (particles && item.written && item.kind != KIND_TEMPERATURE);
     p->item[p->items++] = item;
     return STATUS_OK;
 }
