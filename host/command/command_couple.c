@@ -14,12 +14,6 @@ struct couple {
     int ended; /* status with which the partner has ended */
 };
 
-static int every_option(const char *text, void *every) {
-    if (strncmp(text, "every:", 6) != 0)
-        return message(STATUS_USAGE, "--times: '%.40s' is not every:S, the seconds from one output to the next", text);
-    return options_number("--times every", text + 6, 1 / SECONDS_MAX, SECONDS_MAX, every);
-}
-
 static const struct option own_options[] = {
     {0, "precice", "FILE", "couple by preCICE, whose configuration is FILE (.xml)",
      TO_TEXT(struct couple, exchange.file)},

@@ -239,6 +239,9 @@ struct time_options {
 /* Functions of the rows above. */
 option_take capacity_option, density_option, melting_option, step_option;
 
+/* Takes every:S, an argument of --times, into a double. */
+option_take every_option;
+
 /* Checks the options when all have been read, and asks `bed` for the columns they name. Without --until the other
  * options are refused. zero: 0 of the unit of temperatures [K]. Status 0 or STATUS_USAGE. */
 int time_check(struct time_options *time, double zero, struct bed_options *bed);

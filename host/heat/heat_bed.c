@@ -23,10 +23,6 @@ static int make_arrays(struct heat *h) {
     return block ? STATUS_OK : message_memory();
 }
 
-static double sum_of_sides(double a, double b) { return a + b; }
-
-static double mean_of_sides(double a, double b) { return a == b ? a : pow((gsl_pow_4(a) + gsl_pow_4(b)) / 2, 0.25); }
-
 /* Allocates the arrays of triangles. */
 static int make_triangles(struct heat *h) {
     static const struct side_quantity quantity[TRIANGLE_QUANTITIES] = {

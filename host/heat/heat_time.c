@@ -40,6 +40,14 @@ int step_option(const char *text, void *step) {
     return strcmp(text, "auto") == 0 ? STATUS_OK : options_number("--step", text, 1 / SECONDS_MAX, SECONDS_MAX, step);
 }
 
+static bool is_every(const char *times) { return strncmp(times, "every:", 6) == 0; }
+
+int every_option(const char *text, void *every) {
+    if (!is_every(text))
+        return message(STATUS_USAGE, "--times: '%.40s' is not every:S, the seconds from one output to the next", text);
+    return options_number("--times every", text + 6, 1 / SECONDS_MAX, SECONDS_MAX, every);
+}
+
 int time_check(struct time_options *time, double zero, struct bed_options *bed) {
     const struct quantity *c = &time->capacity, *rho = &time->density;
     if (!(time->until > 0)) {
@@ -55,8 +63,8 @@ int time_check(struct time_options *time, double zero, struct bed_options *bed) 
     if (time->latent > 0 && !(time->melting + zero - time->width / 2 > 0))
         return message(STATUS_USAGE, "--melting: %g less half of the width is not above absolute zero", time->melting);
     if (!rho->given) return message(STATUS_USAGE, "--until needs --density");
-    if (time->times && strncmp(time->times, "every:", 6) == 0) {
-        const int status = options_number("--times every", time->times + 6, 1 / SECONDS_MAX, SECONDS_MAX, &time->every);
+    if (time->times && is_every(time->times)) {
+        const int status = every_option(time->times, &time->every);
         if (status) return status;
         if (time->until / time->every > TIMES_MAX)
             return message(STATUS_USAGE, "--times: more than %d times", TIMES_MAX);

@@ -9,12 +9,19 @@
 
 /* ---- values of the sides of triangles, and arrays over triangles made of them ------------------------------------ */
 
+/* Makes the value of a triangle of the values of its two sides: their sum, or the temperature whose T^4 is the mean. */
+typedef double side_join(double a, double b);
+side_join sum_of_sides, mean_of_sides;
+
+/* The value of a triangle. NaN: the side has no value, and that of the other side counts. */
+double side_joined(const double side[2], side_join *join);
+
 /* One quantity. NaN: the side has no value. */
 struct side_quantity {
-    const char *name[3];                /* names of the arrays of whole triangles, of fronts and of backs */
-    double (*join)(double a, double b); /* makes the value of a triangle of the values of its two sides */
-    double *side;                       /* [2 n] in: element 2 t is the front and 2 t + 1 the back of triangle t */
-    double *shown[3];                   /* [n] out: the three arrays */
+    const char *name[3]; /* names of the arrays of whole triangles, of fronts and of backs */
+    side_join *join;
+    double *side;     /* [2 n] in: element 2 t is the front and 2 t + 1 the back of triangle t */
+    double *shown[3]; /* [n] out: the three arrays */
 };
 
 /* Begin with zeroes; free with side_arrays_free. */

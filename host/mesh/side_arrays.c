@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "mesh/meshes.h"
 
-#include <math.h>
+#include <gsl/gsl_math.h>
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -28,13 +28,21 @@ void side_arrays_free(struct side_arrays *arrays) {
     *arrays = (struct side_arrays){0};
 }
 
+double sum_of_sides(double a, double b) { return a + b; }
+
+double mean_of_sides(double a, double b) { return a == b ? a : pow((gsl_pow_4(a) + gsl_pow_4(b)) / 2, 0.25); }
+
+double side_joined(const double side[2], side_join *join) {
+    return isnan(side[0]) ? side[1] : isnan(side[1]) ? side[0] : join(side[0], side[1]);
+}
+
 void side_arrays_show(struct side_arrays *arrays) {
     for (size_t q = 0; q < arrays->count; ++q) {
         const struct side_quantity *quantity = &arrays->quantity[q];
         for (size_t t = 0; t < arrays->n; ++t) {
-            const double front = quantity->side[2 * t], back = quantity->side[2 * t + 1];
-            quantity->shown[0][t] = isnan(front) ? back : isnan(back) ? front : quantity->join(front, back);
-            if (arrays->arrays > 1) quantity->shown[1][t] = front, quantity->shown[2][t] = back;
+            const double *side = quantity->side + 2 * t;
+            quantity->shown[0][t] = side_joined(side, quantity->join);
+            if (arrays->arrays > 1) quantity->shown[1][t] = side[0], quantity->shown[2][t] = side[1];
         }
     }
 }

@@ -133,12 +133,14 @@ static int make_sides(struct coupling *c) {
     if (h->values.side_temperature)
         for (int a = SIDE_BEGUN; a <= SIDE_END; ++a)
             memcpy(c->side[a], h->values.side_temperature, sides * sizeof *block);
-    m->sources.side_temperature = c->side[SIDE_BEGUN], m->span.side_temperature = c->side[SIDE_END];
-    m->sources.side_film = c->side[SIDE_FILM];
-    m->sources.side_gas = c->side[BEHIND_BEGUN], m->span.side_gas = c->side[BEHIND_END];
-    m->span.side_energy = c->side[SIDE_ENERGY], m->span.side_end = block + 6 * sides;
+    if (c->exchange->faces.n > 0) { /* else exchange factors may serve */
+        m->sources.side_temperature = c->side[SIDE_BEGUN], m->span.side_temperature = c->side[SIDE_END];
+        m->sources.side_film = c->side[SIDE_FILM];
+        m->sources.side_gas = c->side[BEHIND_BEGUN], m->span.side_gas = c->side[BEHIND_END];
+        m->span.side_energy = c->side[SIDE_ENERGY], m->span.side_end = block + 6 * sides;
+    }
     c->saved = block + 7 * sides, c->gas_begun = c->saved + 2 * n;
-    m->span.convected_energy = c->gas_begun + n;
+    if (h->films.film) m->span.convected_energy = c->gas_begun + n;
     if (c->exchange->gives_gas) m->sources.gas = c->gas_begun, m->span.gas = h->films.end;
     return STATUS_OK;
 }
@@ -169,12 +171,6 @@ static void set_given(struct coupling *c) {
     }
 }
 
-/* The temperature of a face: the mean of T^4 over its sides that are walls. */
-static double face_temperature(const double side[2]) {
-    if (isnan(side[0]) || isnan(side[1])) return isnan(side[0]) ? side[1] : side[0];
-    return pow((gsl_pow_4(side[0]) + gsl_pow_4(side[1])) / 2, 0.25);
-}
-
 /* [W/K] By how much the mean power to the gas falls if the gas is 1 K hotter at the end of the time window. In the
  * first time window the temperature of the gas is constant, in later ones it changes evenly. A sphere of the capacity
  * [J/K] follows the gas. */
@@ -189,15 +185,17 @@ static void take_found(struct coupling *c) {
     const fibrad_span *span = &c->run.span;
     for (uint32_t k = 0; k < e->faces.n; ++k) {
         const size_t s = 2 * (size_t)e->faces.triangle[k];
-        e->faces.found[k] = face_temperature(span->side_end + s);
-        e->faces.energy[k] = (isnan(span->side_energy[s]) ? 0 : span->side_energy[s]) +
-                             (isnan(span->side_energy[s + 1]) ? 0 : span->side_energy[s + 1]);
+        const double energy = side_joined(span->side_energy + s, sum_of_sides);
+        e->faces.found[k] = side_joined(span->side_end + s, mean_of_sides);
+        e->faces.energy[k] = isnan(energy) ? 0 : energy;
     }
-    for (uint32_t i = 0; i < e->particles.n; ++i)
-        e->particles.found[i] = span->temperature[i], e->particles.energy[i] = -span->convected_energy[i];
     const struct film_state *films = &c->run.heat->films;
-    for (uint32_t i = 0; i < e->particles.n && films->film; ++i)
+    for (uint32_t i = 0; i < e->particles.n; ++i) {
+        e->particles.found[i] = span->temperature[i];
+        if (!films->film) continue;
+        e->particles.energy[i] = -span->convected_energy[i];
         e->particles.conductance[i] = mean_conductance(c, films->film[i] / films->per_watt, span->capacity[i]);
+    }
 }
 
 /* Saves the state at the beginning of a time window, or goes back to it. */

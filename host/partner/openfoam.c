@@ -167,10 +167,6 @@ static int next_whole(struct numbers *from, int end, int *value, bool *more) {
 
 /* ---- faces ------------------------------------------------------------------------------------------------------- */
 
-static double distance_between(const double a[3], const double b[3]) {
-    return sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
-}
-
 /* Reads the corners of a face among n points. */
 static int read_corners(struct numbers *from, double (*point)[3], int n, struct patch_face *face) {
     const double *corner[CORNERS_MOST] = {0};
@@ -186,9 +182,9 @@ static int read_corners(struct numbers *from, double (*point)[3], int n, struct 
         const double *const o = corner[0], *const a = corner[k], *const b = corner[(k + 1) % corners];
         for (int c = 0, d = 1, e = 2; c < 3; d = e, e = c++)
             area[c] += ((a[d] - o[d]) * (b[e] - o[e]) - (a[e] - o[e]) * (b[d] - o[d])) / 2;
-        face->size = fmax(face->size, distance_between(face->centre, a));
+        face->size = fmax(face->size, surface_distance(face->centre, a));
     }
-    face->area = distance_between(area, (const double[3]){0});
+    face->area = surface_distance(area, (const double[3]){0});
     return status;
 }
 
@@ -244,7 +240,7 @@ static int find_nearest_faces(const struct exchange_faces *faces, struct openfoa
         for (int step = 1 << 30; step > 0; step /= 2)
             if (step <= foam->n - low && sorted[low + step - 1].at < at - largest) low += step;
         for (int k = low; k < foam->n && sorted[k].at <= at + least; ++k) {
-            const double away = distance_between(foam->face[sorted[k].face].centre, faces->centre[t]);
+            const double away = surface_distance(foam->face[sorted[k].face].centre, faces->centre[t]);
             if (away <= least) least = away, found = sorted[k].face;
         }
         foam->at[t] = found != NO_FACE && least <= foam->face[found].size ? found : NO_FACE;

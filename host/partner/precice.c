@@ -3,7 +3,6 @@
  * The configuration says which meshes the participant provides, and which data it reads and writes there. Ends of
  * names, behind - or _, say what they are. A mesh ends in the name of a wall, or in Particles or Spheres. Ends of data
  * are in `kinds`. Source: preCICE 3, preciceC.h. */
-#include <ctype.h>
 #include <dlfcn.h>
 #include <math.h>
 #include <setjmp.h>
@@ -60,7 +59,6 @@ struct precice {
     struct item item[ITEMS];
     size_t items;
     struct library library;
-    void *handle;
     int *id;       /* [faces, then particles] of vertices */
     double *value; /* [the same] */
     bool created;
@@ -327,14 +325,14 @@ static int finish_now(struct exchange *e) {
 /* Loads libprecice. */
 static int load_library(struct precice *p) {
     void *function[SYMBOLS];
-    p->handle = dlopen("libprecice.so.3", RTLD_NOW | RTLD_GLOBAL);
-    if (!p->handle)
+    void *const handle = dlopen("libprecice.so.3", RTLD_NOW | RTLD_GLOBAL);
+    if (!handle)
         return message(STATUS_FILE, "--precice: libprecice.so.3 cannot be loaded: %s; LD_LIBRARY_PATH says where it is",
                        dlerror());
     for (size_t k = 0; k < SYMBOLS; ++k) {
         char name[64];
         snprintf(name, sizeof name, "precicec_%s", symbols[k]);
-        function[k] = dlsym(p->handle, name);
+        function[k] = dlsym(handle, name);
         if (!function[k]) return message(STATUS_FILE, "--precice: libprecice.so.3 has no %s", name);
     }
     memcpy(&p->library, function, sizeof function);

@@ -7,6 +7,10 @@
 
 static inline double inner(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+static inline void cross(const double a[3], const double b[3], double to[3]) {
+    for (int k = 0; k < 3; ++k) to[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
 /* The point of the side from `a` along `side` that is nearest to the origin. */
 static inline double nearest_on_side(const double a[3], const double side[3], double to[3]) {
     const double square = inner(side, side), share = square > 0 ? -inner(a, side) / square : 0;
@@ -21,14 +25,12 @@ static inline double nearest_on_triangle(double corner[3][3], double to[3], bool
     double side[3][3], normal[3], best = INFINITY;
     for (int c = 0; c < 3; ++c)
         for (int k = 0; k < 3; ++k) side[c][k] = corner[(c + 1) % 3][k] - corner[c][k];
-    for (int k = 0; k < 3; ++k)
-        normal[k] = side[0][(k + 1) % 3] * side[1][(k + 2) % 3] - side[0][(k + 2) % 3] * side[1][(k + 1) % 3];
+    cross(side[0], side[1], normal);
     const double square = inner(normal, normal);
     *inside = square > 0;
     for (int c = 0; c < 3; ++c) {
         double out[3], at[3];
-        for (int k = 0; k < 3; ++k)
-            out[k] = side[c][(k + 1) % 3] * normal[(k + 2) % 3] - side[c][(k + 2) % 3] * normal[(k + 1) % 3];
+        cross(side[c], normal, out);
         *inside = *inside && inner(out, corner[c]) >= 0;
         const double far = nearest_on_side(corner[c], side[c], at);
         if (far >= best) continue;

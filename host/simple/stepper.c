@@ -23,6 +23,7 @@
 
 #include "simple/bed.h"
 #include "simple/bodies.h"
+#include "simple/nearest.h"
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
 #define TOLERANCE 1e-4
@@ -74,14 +75,11 @@ static double heat_at(const struct stepper *m, uint32_t i, double temperature, d
 static double area_of_triangle(const fibrad_triangles *mesh, size_t t) {
     const double *const at[] = {mesh->x, mesh->y, mesh->z};
     const uint32_t *corner = mesh->corner + 3 * t;
-    double u[3], v[3], square = 0;
+    double u[3], v[3], normal[3];
     for (int axis = 0; axis < 3; ++axis)
         u[axis] = at[axis][corner[1]] - at[axis][corner[0]], v[axis] = at[axis][corner[2]] - at[axis][corner[0]];
-    for (int axis = 0; axis < 3; ++axis) {
-        const double normal = u[(axis + 1) % 3] * v[(axis + 2) % 3] - u[(axis + 2) % 3] * v[(axis + 1) % 3];
-        square += normal * normal;
-    }
-    return sqrt(square) / 2;
+    cross(u, v, normal);
+    return sqrt(inner(normal, normal)) / 2;
 }
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }

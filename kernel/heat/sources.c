@@ -84,11 +84,16 @@ static double side_temperature(const fibrad_heat *heat, const fibrad_heat_source
     return is_given(own) ? own : of_body;
 }
 
+/* Whether something is said of sides of meshes. */
+static bool says_sides(const fibrad_heat_sources *s) {
+    return s->side_temperature != NULL || s->side_film != NULL || s->side_power != NULL;
+}
+
 /* Whether what is given of the sides of a wall is valid. Only a mesh whose temperature is given may have any of it. */
 static bool sides_valid(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool valid = true;
-    if (heat->slot[b] < FIBRAD_MESHES) return true;
+    if (heat->slot[b] < FIBRAD_MESHES || !says_sides(s)) return true;
     const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
     const radiator body = of_body(s, b);
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
@@ -206,7 +211,7 @@ static bool touches(const fibrad_heat *heat, uint32_t end) {
 static bool has_one_temperature(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool one = s->insulated == NULL || s->insulated[b] == 0;
-    if (heat->slot[b] < FIBRAD_MESHES) return one;
+    if (heat->slot[b] < FIBRAD_MESHES || !says_sides(s)) return one;
     const uint32_t m = heat->slot[b] - FIBRAD_MESHES;
     for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1]; k++) {
         const fibrad_heat_side side = fibrad_heat_side_of(heat, s, mesh->side[k]);
@@ -364,7 +369,7 @@ static double middle_emission(const fibrad_heat *heat, const fibrad_heat_sources
     for (uint32_t b = 0; b < heat->given_walls; b++) {
         const radiator source = of_body(s, b);
         widen_range(range, s, &source);
-        if (heat->slot[b] < FIBRAD_MESHES) continue;
+        if (heat->slot[b] < FIBRAD_MESHES || s->side_temperature == NULL) continue;
         const uint32_t *first = heat->scene->mesh.first + (heat->slot[b] - FIBRAD_MESHES);
         for (uint32_t k = first[0]; k < first[1]; k++) {
             radiator side = source;
@@ -434,7 +439,7 @@ static void set_mesh(fibrad_heat *heat, const fibrad_heat_sources *s, double mid
     const fibrad_mesh *mesh = &heat->scene->mesh;
     bool *has = &heat->sources.has_sides[m];
     *has = false, heat->sources.of_others[m] = own;
-    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1] && is_given(own); k++)
+    for (uint32_t k = mesh->first[m]; k < mesh->first[m + 1] && is_given(own) && says_sides(s); k++)
         *has = *has || fibrad_heat_side_of(heat, s, mesh->side[k]).found;
     heat->sources.sides = heat->sources.sides || *has;
     heat->sources.has_excess[m] = *has || (s->side_temperature != NULL && is_given(own) && source.emissivity > 0);

@@ -517,7 +517,8 @@ class Bed:
                        held=span.held_energy, stored=stored, melted=fraction,
                        wall_temperatures=dict(zip(container.names, ended.tolist())),
                        triangle_energies={} if of_sides is None else container.by_mesh(of_sides[0]),
-                       triangle_temperatures={} if of_sides is None else container.by_mesh(of_sides[1]), steps=span.steps, refused=span.refused,
+                       triangle_temperatures={} if of_sides is None else container.by_mesh(of_sides[1]),
+                       steps=span.steps, refused=span.refused,
                        corrections=span.corrections, error=span.error)
 
 
