@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include "mesh/meshes.h"
 
-#include <gsl/gsl_math.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "cli/message.h"
@@ -30,7 +30,7 @@ void side_arrays_free(struct side_arrays *arrays) {
 
 double sum_of_sides(double a, double b) { return a + b; }
 
-double mean_of_sides(double a, double b) { return a == b ? a : pow((gsl_pow_4(a) + gsl_pow_4(b)) / 2, 0.25); }
+double mean_of_sides(double a, double b) { return a == b ? a : pow(((a * a) * (a * a) + (b * b) * (b * b)) / 2, 0.25); }
 
 double side_joined(const double side[2], side_join *join) {
     return isnan(side[0]) ? side[1] : isnan(side[1]) ? side[0] : join(side[0], side[1]);
