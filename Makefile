@@ -413,8 +413,8 @@ fuzz: fuzz-programs
 	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
 	done
 
-## fuzz-fixed: fuzz with a fixed number of inputs, the same ones every time (half a minute)
-FUZZ_RUNS = kernel:400 host:100 read:5000
+## fuzz-fixed: fuzz with a fixed number of inputs, the same ones every time (quarter of a minute)
+FUZZ_RUNS = kernel:250 host:60 read:3000
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
 	@echo $(FUZZ_RUNS) | tr ' ' '\n' | OMP_WAIT_POLICY=passive xargs -P 2 -I{} sh -ec 'run={}; target=$${run%:*}; \
@@ -470,7 +470,7 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	BUILD=$(BUILD) tests/partner/check_openfoam.sh
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)"
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
-	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
+	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh tests/check_readme.sh $(TEST_PROGRAMS)
 	$(MAKE) test-couple
 	$(MAKE) mutate
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"

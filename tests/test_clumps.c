@@ -497,7 +497,7 @@ TEST(settled_clumps) {
     for (int k = 0; k < 2; ++k) {
         const char *path = in_folder("f.csv");
         SUCCEED("factors", CLUMPS, "--clump", "id_multisphere", "--wall", "zmin:at=0", "--directions",
-                k ? "100" : "512", "-o", path);
+                k ? "60" : "240", "-o", path);
         read_entries(path, N, f + k * N * N, sum + k * N);
         ck_assert(value_of("clumps") == N && value_of("spheres") == 3 * N && value_of("closure_max") < 1e-13 &&
                   value_of("reciprocity_max") < 4e-16);

@@ -266,7 +266,7 @@ static struct compared compare(const struct joint *j, const double *t, const dou
  * and rows right to .001 the difference was 0.2 to 0.4 %; here it is at most that and the noise of the rows. */
 LOOP_TEST(spheres_in_a_room, 2) {
     struct joint *j = &joint;
-    const uint32_t n = 24;
+    const uint32_t n = 16;
     const uint64_t seed = 100 + (uint64_t)_i;
     begin(j, packing(n, .5, 1, .3, seed, false), 0);
     double half = 0;

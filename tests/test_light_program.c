@@ -164,7 +164,7 @@ TEST(half_angles_have_units) {
     for (int k = 0; k < 5; ++k) {
         const char *json = in_folder("h.json"), *angle = k < 4 ? same[k] : "0.4";
         SUCCEED(HEAT, "--temperature", "300", "--wall", CUP, "--directions", "50", "--json", json, "--irradiate",
-                formatted("0,0,-1:1000:disc=1,1,3,.5:half-angle=%s", angle));
+                formatted("0,0,-1:1000:half-angle=%s", angle));
         absorbed[k] = json_of(json, "absorbed_first_W");
     }
     for (int k = 1; k < 4; ++k) ck_assert_double_eq_tol(absorbed[k], absorbed[0], 1e-9 * absorbed[0]);

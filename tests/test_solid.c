@@ -157,7 +157,7 @@ LOOP_TEST(simple_cubic, 14) {
 
 /* Solves the problem plainly by harmonics: degrees up to DEGREE of the radiosity J of each sphere. Overlaps come from
  * rays. sigma T^4 rises by `period` along z from one image of the bed to the next. */
-enum { SPHERES = 8u, DEGREE = 5, TERMS = (DEGREE + 1) * (DEGREE + 1), UNKNOWN = SPHERES * TERMS, RAYS = 20000 };
+enum { SPHERES = 8u, DEGREE = 5, TERMS = (DEGREE + 1) * (DEGREE + 1), UNKNOWN = SPHERES * TERMS, RAYS = 8000 };
 
 /* Real harmonics at a point of the unit sphere, each with the mean square 1. */
 static void harmonics(const double n[3], double y[TERMS]) {
