@@ -125,7 +125,7 @@ static double to_side(double r, double e, double relative) {
     OWNED fibrad_scene *scene = scene_with(&bed, &config);
     OWNED_WORK work = work_growing();
     const double node = fibrad_node_emissivity(e, relative), black[] = {1, 1, 1, 1, 1, 1};
-    fibrad_wall_rule rule = {.emissivity = &e, .wall_emissivity = black, .paths = 1 << 20, .conductivity = &relative};
+    fibrad_wall_rule rule = {.emissivity = &e, .wall_emissivity = black, .paths = 1 << 21, .conductivity = &relative};
     rule.node_emissivity = &node;
     fibrad_wall_row part[FIBRAD_WALL_PARTS], mean;
     for (uint32_t k = 0; k < FIBRAD_WALL_PARTS; ++k)

@@ -141,7 +141,7 @@ static int check_scene(const struct spot_scene *s, int rays, int *values) {
  * of what is absorbed. */
 TEST(spots_of_all_sizes) {
     int values = 0, beyond = 0;
-    for (int k = 0; k < SCENES; k += 4) {
+    for (int k = 0; k < SCENES; k += (int)by_night(4, 8)) {
         OWNED_BY(free_scene) struct spot_scene s = lit_scene(k);
         settle_scene(&s);
         beyond += check_scene(&s, 300000, &values);
