@@ -311,7 +311,7 @@ FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*
 
 ## format: every source has the format of .clang-format (to repair: clang-format -i FILE)
 format:
-	clang-format --dry-run --Werror $(FORMATTED)
+	printf '%s\n' $(FORMATTED) | xargs -P 2 -n 60 clang-format --dry-run --Werror
 
 BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
 
@@ -400,10 +400,8 @@ FUZZ_FLAGS   = -timeout=60 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask
 fuzz-programs: need-libraries
 	+@$(SANITIZED) $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%)
 	@mkdir -p $(FUZZ)
-	@set -e; for target in $(FUZZ_TARGETS); do \
-	    clang -O1 -g -fsanitize=fuzzer,$(SANITIZE) -fno-sanitize-recover=undefined $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
-	        $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
-	done
+	@printf '%s\n' $(FUZZ_TARGETS) | xargs -P 2 -I{} clang -O1 -g -fsanitize=fuzzer,$(SANITIZE) -fno-sanitize-recover=undefined \
+	    $(HOST_FLAGS) tests/fuzz/fuzz_{}.c $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_{}
 
 ## fuzz: hostile input for the readers, the kernel and the simple layer, FUZZ_SECONDS=60 in all
 fuzz: fuzz-programs

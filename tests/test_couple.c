@@ -117,9 +117,9 @@ TEST(energy_of_windows) {
 TEST(as_heat_alone) {
     const char *q = in_folder("q.csv"), *other = in_folder("other.csv");
     config = write_config(DIRICHLET GAS);
-    SUCCEED(BED, "--convection", "20", "--step", "10", "-o", q, "--times", "every:150");
+    SUCCEED(BED, "--convection", "20", "--step", "25", "-o", q, "--times", "every:150");
     SUCCEED("heat", bed, MATTER, "--wall", box, "--convection", "20", "--gas-temperature", "300", ROUGHLY, "--until",
-            "300", "--step", "10", "--times", "200,300", "-o", other);
+            "300", "--step", "25", "--times", "200,300", "-o", other);
     const char *a = read_file(q), *b = read_file(other);
     for (int k = 0; k < 2 * 27; ++k) {
         do a = strchr(a, '\n') + 1, b = strchr(b, '\n') + 1;

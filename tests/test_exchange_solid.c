@@ -141,7 +141,8 @@ TEST(by_a_ball) {
     const double r = .8, direct = to_side(r, 1, INFINITY);
     light_ball(r, &ball);
     for (int k = 0; k < 4; ++k) {
-        const double truth = by_ball(&ball, r, e[k], e[k] / (2 * relative[k])), found = to_side(r, e[k], relative[k]) - direct;
+        const double truth = by_ball(&ball, r, e[k], e[k] / (2 * relative[k])),
+                     found = to_side(r, e[k], relative[k]) - direct;
         assert_near(found, truth, .005);
     }
 }
