@@ -201,6 +201,9 @@ $(STAND_IN): tests/partner/precice.c
 	$(CC) $(CFLAGS) -fPIC -shared $(LDFLAGS) $< -lm -o $@
 $(BUILD)/tests/test_couple: | $(STAND_IN)
 
+# these follow many rays of their own
+$(patsubst %,$(BUILD)/tests/test_%,clump_heat light_cones light_heat light_mesh light_spots solid trace walls): TEST_LEVEL = -O2
+
 # this test counts calls of the kernel
 $(BUILD)/tests/test_scenes: WRAPPED = -Wl,--wrap=fibrad_scene_init
 

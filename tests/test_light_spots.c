@@ -238,7 +238,7 @@ TEST(same_bits_everywhere) {
         OWNED_BY(free_scene) struct spot_scene s = lit_scene(11);
         settle_scene(&s);
         s.config.isa = isas.set[k % isas.count];
-        take_ours(&s, 24, k == 0 ? first : other, error, 1 + k / isas.count);
+        take_ours(&s, 96, k == 0 ? first : other, error, 1 + k / isas.count);
         if (k > 0) ck_assert_mem_eq(first, other, sizeof first);
     }
 }

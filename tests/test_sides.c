@@ -189,7 +189,7 @@ static void solve_with(struct room *room, int extra) {
 /* Fluxes, powers and temperatures are those of the temperatures that were found; the balance of each side closes; and
  * all powers add up to 0. Spheres that conduct and streams are found to 1e-3 and 1e-5 only. */
 LOOP_TEST(temperatures_found_and_given, EXTRAS) {
-    OWNED_ROOM *room = room_new(_i == FINE ? 14 : 1, _i == ONE_WALL || _i == FINE);
+    OWNED_ROOM *room = room_new(_i == FINE ? 14 : 2, _i == ONE_WALL || _i == FINE);
     OWNED struct room *first = malloc(sizeof *first);
     struct extra extra;
     fill(room);

@@ -488,7 +488,7 @@ static int count_returns(void *context, const char *stage, uint64_t done, uint64
 /* A bed comes apart, so that spheres see more others than there is room for. They get more room, and all is as if the
  * bed had begun so. */
 TEST(radiation_gets_more_room) {
-    enum { MANY = 400 };
+    enum { MANY = 800 };
     OWNED_BED bed = packing(MANY, 1, 1, .6, 3, false);
     const fibrad_spheres spheres = spheres_of(&bed);
     const fibrad_heat_config config = {.patches = 96, .directions = 672};
