@@ -41,8 +41,8 @@ TEST(emissivities_of_nodes) {
 /* The part a/(a + l) of degree l is given off. All of it comes from what is not given off evenly. */
 TEST(patterns_that_are_not_even) {
     enum { DRAWS = 200000, DEGREES = 8 };
-    static const double a[] = {1e-6, .04, .5, 4, 100};
-    for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
+    static const double a[] = {1e-6, .5, 100, .04, 4};
+    for (uint64_t k = 0; k < by_night(5, 3); ++k) {
         double mean[DEGREES + 1] = {0};
         fibrad_random random = fibrad_random_start(5, k);
         for (uint64_t n = 0; n < DRAWS; ++n) {

@@ -78,8 +78,8 @@ static void draw_point(uint64_t *count, double point[3]) {
  * cosine. */
 TEST(patterns_of_a_ball) {
     enum { DRAWS = 200000, DEGREES = 8 };
-    static const double a[] = {.001, .1, 1, 5, 100};
-    for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
+    static const double a[] = {.001, 1, 100, .1, 5};
+    for (uint64_t k = 0; k < by_night(5, 3); ++k) {
         double mean[DEGREES + 1] = {0}, turned[3] = {0};
         uint64_t count = 0;
         for (int n = 0; n < DRAWS; ++n) {

@@ -211,7 +211,7 @@ static int warm(double time, const double t[], double slope[], void *held) {
 }
 
 /* A floor that stores heat, between a held sphere and the surroundings, with a power and a film of its own. */
-LOOP_TEST(wall_stores, 2) {
+LOOP_TEST(wall_stores, by_night(2, 1)) {
     struct held h = {.temperature = 1000, .around = 400, .capacity = 300, .power = 50, .film = 2};
     OWNED_BED bed = BED({0, 0, 0, .1});
     const fibrad_spheres spheres = spheres_of(&bed);
