@@ -148,6 +148,10 @@ typedef struct fibrad_stream {
  * 0 that is in contact has a temperature, and may give off a power. `conductance` is in units of sigma K^3 L^2. If
  * lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K is 1e6.
  *
+ * contact_temperature is for walls whose temperature differs from place to place. The second end of a contact is then a
+ * wall of given temperature that is not insulated, and contact_temperature is the temperature at the contact. If sides
+ * of the wall have temperatures or films, each of its contacts needs one, and the wall has no film of its own.
+ *
  * A film exchanges heat with gas: film times the difference of the temperatures of gas and surface. It is the heat
  * transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact does: also on spheres of
  * emissivity 0. On a sphere with a finite conductivity it acts point by point. The temperature of the gas is given by
@@ -207,6 +211,7 @@ typedef struct fibrad_heat_sources {
     const uint32_t *contact_second;     /* [contacts], the other end */
     const double *conductance;          /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
     uint32_t contacts;                  /* number of contacts */
+    const double *contact_temperature;  /* K, [contacts], of the second end, a wall; NaN: the wall's; NULL: all NaN */
     const double *film;                 /* sigma K^3 L^2, [spheres], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
     const double *gas;                  /* K, [spheres], temperature of the gas at a film; NULL without `film` */
     const double *wall_film, *wall_gas; /* the same, [walls] */

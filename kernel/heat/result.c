@@ -149,7 +149,8 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
     }
     for (uint32_t k = 0; k < c->count; k++)
         put_wanted(result->contact_flow, k,
-                   c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
+                   c->conductance[k] * (c->temperature[c->node[c->first[k]]] -
+                                        fibrad_heat_at_contact(heat, k, c->temperature[c->node[c->second[k]]])) +
                        (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
     for (uint32_t k = 0; k < c->count; k++) put_wanted(result->contact_error, k, fibrad_heat_flow_error(heat, k));
     result->surroundings_power = heat->solution.power[heat->bodies - 1];

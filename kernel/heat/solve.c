@@ -322,6 +322,7 @@ static double scale_of_contacts(fibrad_heat *heat, double emission) {
         c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
         c->missing[b] = joined ? heat->sources.given_power[b] - heat->sources.storage[b] * emission : 0;
     }
+    fibrad_heat_add_places(heat, c->missing);
     fibrad_heat_sum_clumps(heat, c->stiff);
     fibrad_heat_sum_clumps(heat, c->missing);
     fibrad_contact_gains(c, c->temperature, c->missing);
@@ -448,6 +449,7 @@ static void guess_joined(fibrad_heat *heat) {
         c->supply[b] =
             heat->sources.given_power[b] + (c->stiff[b] - heat->sources.storage[b]) * heat->sources.emission[b];
     }
+    fibrad_heat_add_places(heat, c->supply);
     sum_balances(heat);
     find_streaming(c, BALANCED_ROUGHLY);
     fibrad_heat_follow_leaders(heat, c->temperature);
