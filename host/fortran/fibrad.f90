@@ -40,7 +40,7 @@ module fibrad
             reference = c_null_ptr, wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, &
             wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = 0, tolerance = 0
-        integer(c_int32_t) :: sweeps_max = 0
+        integer(c_int32_t) :: sweeps_max = 0, no_errors = 0
         type(c_ptr) :: side_temperature = c_null_ptr, side_film = c_null_ptr, side_gas = c_null_ptr, &
             side_power = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr, absorbed = c_null_ptr, &
             contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr

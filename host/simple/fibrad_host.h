@@ -407,7 +407,7 @@ typedef struct fibrad_span {
  * The members of a clump begin at one temperature, equally melted. They have the same store. All or none are held.
  *
  *   field of sources                    use
- *   temperature, storage, reference     not used
+ *   temperature, storage, reference, no_errors    not used
  *   power                               constant
  *   emissivity, wall_emissivity         constant, or where a law begins
  *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: a wall's is to be found

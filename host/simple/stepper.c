@@ -651,7 +651,7 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     for (size_t k = 0; k < 2; ++k) m.stage_walls[k] = t->wall_stage + (k + 1) * walls;
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.storage = t->storage, m.sources.reference = t->guess;
-    m.sources.wall_temperature = t->wall_stage;
+    m.sources.wall_temperature = t->wall_stage, m.sources.no_errors = 1;
     if (span->gas) m.sources.gas = t->gas;
     if (span->wall_gas) m.sources.wall_gas = t->wall_gas;
     begin_walls(&m);

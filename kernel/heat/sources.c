@@ -593,7 +593,6 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         if (!heat->traced[task]) return FIBRAD_E_STATE;
     const double middle = middle_emission(heat, sources);
-    bool unknown = false;
     begin_contacts(heat, sources);
     /* Thermal radiation does not begin with the radiosities of light, nor light with those of thermal radiation. */
     if ((sources->light != NULL) != (heat->sources.light != NULL)) heat->solution.warm = false;
@@ -604,7 +603,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.asked = *sources;
     heat->sources.sides = heat->sources.passed = false;
     set_walls(heat, sources, middle);
-    unknown = heat->sources.sides;
+    bool unknown = heat->sources.sides;
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;

@@ -204,7 +204,7 @@ typedef struct fibrad_heat_solution {
     double *unsettled;       /* [bodies], what `left` of both levels makes of the extrapolated power */
     double sent_drift, sent_left, sent_unsettled; /* the same for what all surfaces send out */
     fibrad_heat_span *span;                       /* [spheres] */
-    bool steps; /* this is a step in time: extremes are found when they are asked for */
+    bool steps; /* a step in time, or no errors are wanted: extremes are found when they are asked for */
 } fibrad_heat_solution;
 
 /* Contacts that act at their places on spheres that conduct. The arrays are the caller's. */

@@ -19,7 +19,7 @@ class HeatSources(Structure):
                 ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
                 ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
                 ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
-                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32),
+                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32), ("no_errors", c_uint32),
                 ("side_temperature", POINTER(c_double)), ("side_film", POINTER(c_double)),
                 ("side_gas", POINTER(c_double)), ("side_power", POINTER(c_double)), ("light", POINTER(c_double)),
                 ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
