@@ -468,9 +468,9 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/package/check_deb.sh
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) tests/partner/check_openfoam.sh
-	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)"
+	BUILD=$(BUILD) CC="$(CC)" tests/check_python.sh
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
-	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
+	$(MAKE) run-programs
 	$(MAKE) test-couple
 	$(MAKE) mutate
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"
