@@ -3,6 +3,8 @@
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 .SUFFIXES:
+# numbers of awk, order of sort, words of compilers
+export LC_ALL = C
 
 # ---- yours to set on the command line -------------------------------------------------------------------------------
 CC         = cc
