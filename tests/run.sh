@@ -40,7 +40,7 @@ export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | xargs -r -n 1 -P "$(nproc)" "$0" --one
+printf '%s\n' "$@" | xargs -r -n 1 -P "$(env -u OMP_NUM_THREADS nproc)" "$0" --one
 
 set -- 0 0 0 0
 for counts in "$logs"/*.counts; do
