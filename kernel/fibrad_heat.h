@@ -148,6 +148,10 @@ typedef struct fibrad_stream {
  * 0 that is in contact has a temperature, and may give off a power. `conductance` is in units of sigma K^3 L^2. If
  * lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K is 1e6.
  *
+ * contact_temperature is for walls whose temperature differs from place to place. The second end of a contact is then a
+ * wall of given temperature that is not insulated, and contact_temperature is the temperature at the contact. If sides
+ * of the wall have temperatures or films, each of its contacts needs one, and the wall has no film of its own.
+ *
  * A film exchanges heat with gas: film times the difference of the temperatures of gas and surface. It is the heat
  * transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact does: also on spheres of
  * emissivity 0. On a sphere with a finite conductivity it acts point by point. The temperature of the gas is given by
@@ -196,6 +200,7 @@ typedef struct fibrad_heat_sources {
     double sigma;                   /* of E = sigma T^4, FIBRAD_SIGMA_MIN to _MAX */
     double tolerance;               /* residual at which to stop, 0 to below 1; 0: see above */
     uint32_t sweeps_max;            /* sweeps after which to give up, FIBRAD_E_UNSETTLED; 0: 1000 */
+    uint32_t no_errors;             /* not 0: no estimated error is written, and a sweep is saved */
     const double *side_temperature; /* K, [2 triangles], fronts and backs in turn; NaN: the wall's; NULL: all NaN */
     const double *side_film;        /* sigma K^3, [2 triangles], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
     const double *side_gas;         /* K, [2 triangles], temperature behind the film; NULL without `side_film` */
@@ -207,6 +212,7 @@ typedef struct fibrad_heat_sources {
     const uint32_t *contact_second;     /* [contacts], the other end */
     const double *conductance;          /* sigma K^3 L^2, [contacts], 0 to FIBRAD_CONDUCTANCE_MAX */
     uint32_t contacts;                  /* number of contacts */
+    const double *contact_temperature;  /* K, [contacts], of the second end, a wall; NaN: the wall's; NULL: all NaN */
     const double *film;                 /* sigma K^3 L^2, [spheres], 0 to FIBRAD_CONDUCTANCE_MAX; NULL: all 0 */
     const double *gas;                  /* K, [spheres], temperature of the gas at a film; NULL without `film` */
     const double *wall_film, *wall_gas; /* the same, [walls] */
@@ -266,7 +272,8 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean
  * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
- * of all spheres is the root of error_patches^2 + error_beams^2. */
+ * of all spheres is the root of error_patches^2 + error_beams^2. With sources.no_errors no estimated error is written:
+ * none of the arrays and numbers whose names contain "error". */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *wall_power;             /* sigma K^4 L^2, [walls], out: net power; NULL without walls */

@@ -29,6 +29,12 @@ static const char *write_bed(void) {
     return write_file("bed.csv", text);
 }
 
+/* Contacts of some spheres with the box, which is the second end of one. */
+static const char *write_contacts(void) {
+    return write_file("contacts.csv",
+                      "i,j,W/K\noven,0,0.05\n2,oven,0.02\noven,13,0.1\noven,26,0.01\n0,1,0.3\n12,13,1\n");
+}
+
 /* A configuration of preCICE. of_bed: what the participant Bed has. */
 static const char *write_config(const char *of_bed) {
     return write_file("config.xml", formatted("<!-- <participant name=\"Ghost\"> --><precice-configuration>\n"
@@ -67,7 +73,7 @@ static void end(void) {
 FIXTURE(begin, end)
 
 #define MATTER  "--emissivity", "0.8", "--temperature", "500", "--heat-capacity", "800", "--density", "2500"
-#define ROUGHLY "--directions", "16", "--patches", "24", "--wall-rays", "20000", "--threads", "1"
+#define ROUGHLY "--directions", "16", "--patches", "24", "--wall-rays", "4000", "--threads", "1"
 #define BED     "couple", bed, "--precice", config, "--participant", "Bed", MATTER, "--wall", box, ROUGHLY
 
 /* Value k of line i of the file of the stand-in: two lines a time window, what it has received and a first vertex. */
@@ -106,20 +112,22 @@ TEST(energy_of_windows) {
     for (int implicit = 0; implicit < 2; ++implicit) {
         setenv("IMPLICIT", implicit ? "1" : "0", 1), setenv("LEAK", "0.3", 1);
         config = write_config(DIRICHLET GAS);
-        SUCCEED(BED, "--convection", "20", "--json", json, "--step", "50", "--plot", in_folder("q.svg"));
+        SUCCEED(BED, "--convection", "20", "--json", json, "--step", "50", "--plot", in_folder("q.svg"), "--contacts",
+                write_contacts());
         assert_energy(json, 1);
         ck_assert(implicit ? sum_of(json, "iterations") > 8 : sum_of(json, "iterations") == 2);
         unlink(received);
     }
 }
 
-/* With temperatures that do not change, time windows are steps of the same run. */
+/* With temperatures that do not change, time windows are steps of the same run. There a wall in contact has one
+ * temperature. */
 TEST(as_heat_alone) {
     const char *q = in_folder("q.csv"), *other = in_folder("other.csv");
     config = write_config(DIRICHLET GAS);
-    SUCCEED(BED, "--convection", "20", "--step", "10", "-o", q, "--times", "every:150");
+    SUCCEED(BED, "--convection", "20", "--step", "10", "-o", q, "--times", "every:150", "--contacts", write_contacts());
     SUCCEED("heat", bed, MATTER, "--wall", box, "--convection", "20", "--gas-temperature", "300", ROUGHLY, "--until",
-            "300", "--step", "10", "--times", "200,300", "-o", other);
+            "300", "--step", "10", "--times", "200,300", "-o", other, "--contacts", write_contacts());
     const char *a = read_file(q), *b = read_file(other);
     for (int k = 0; k < 2 * 27; ++k) {
         do a = strchr(a, '\n') + 1, b = strchr(b, '\n') + 1;
@@ -133,18 +141,19 @@ TEST(as_heat_alone) {
 TEST(films_and_temperatures_agree) {
     double face[2][2];
     setenv("LENGTH", "1e7", 1), setenv("LEAK", "0.25", 1), setenv("FILM", "50", 1), setenv("IMPLICIT", "1", 1);
-    setenv("WINDOWS", "2", 1);
     ck_assert_double_eq(50 * AREA_OF_FACE, .25);
     for (int films = 0; films < 2; ++films) {
+        const int windows = films ? 14 : 2; /* a face with a film takes what contacts brought in the last time window */
+        setenv("WINDOWS", formatted("%d", windows), 1);
         config = write_config(films ? ROBIN : DIRICHLET);
-        SUCCEED(BED, "--power", "P", "--step", "1e7");
-        for (int k = 0; k < 2; ++k) face[films][k] = received_at(3, k);
+        SUCCEED(BED, "--power", "P", "--step", "1e7", "--contacts", write_contacts());
+        for (int k = 0; k < 2; ++k) face[films][k] = received_at(2 * windows - 1, k);
         face[films][0] = films ? 300 + face[1][1] / .25 : face[0][0];
-        assert_near(received_at(2, 0), 46e7, 1e-6);
+        assert_near(received_at(2 * windows - 2, 0), 46e7, 1e-6);
         unlink(received);
     }
-    assert_near(face[0][1], face[1][1], 1e-6);
-    assert_near(face[0][0], face[1][0], 1e-7);
+    assert_near(face[0][1], face[1][1], 1e-5); /* the residual of time windows that are not repeated */
+    assert_near(face[0][0], face[1][0], 1e-6);
 }
 
 static void refuse(int status, const char *reason, const char *of_bed) {

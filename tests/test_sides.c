@@ -399,6 +399,21 @@ TEST(sides_that_are_refused) {
     assert_invalid(fibrad_bed_solve(room->bed, &room->sources, NULL, &room->result));
     fibrad_bed_describe(room->bed, NULL, &fault);
     ck_assert_int_eq(fault.why, FIBRAD_WHY_TOUCHED);
+    /* so a contact needs a temperature of its own, at a wall */
+    double place = 700, flow;
+    room->sources.contact_temperature = &place, room->result.contact_flow = &flow;
+    solve(room);
+    assert_near(flow, room->found[0] - place, 1e-12);
+    for (int k = 0; k < 2; ++k) {
+        if (k == 0)
+            place = -1;
+        else
+            place = 700, room->sources.contact_second = first;
+        assert_invalid(fibrad_bed_solve(room->bed, &room->sources, NULL, &room->result));
+        fibrad_bed_describe(room->bed, NULL, &fault);
+        ck_assert_int_eq(fault.why, k == 0 ? FIBRAD_WHY_TEMPERATURE : FIBRAD_WHY_CONTACT);
+    }
+    room->sources.contact_temperature = NULL, room->result.contact_flow = NULL;
     room->sources.contacts = 0;
     solve(room);
     /* a side would need a temperature below 0 */
@@ -455,7 +470,7 @@ TEST(a_sphere_in_time) {
     fibrad_span span = {.temperature = t,
                         .capacity = &l.capacity,
                         .duration = seconds,
-                        .step = 1,
+                        .step = 2,
                         .side_gas = gas,
                         .side_energy = energy,
                         .side_end = found,
@@ -509,7 +524,7 @@ LOOP_TEST(energies_of_a_span, 2) {
     fibrad_span span = {.temperature = t,
                         .capacity = capacity,
                         .duration = 20,
-                        .step = 2,
+                        .step = 4,
                         .side_temperature = end,
                         .side_gas = gas,
                         .side_energy = energy,

@@ -132,6 +132,8 @@ void contacts_free(struct contact_state *state) {
     free(state->gas);
     free(state->solid);
     free(state->conducted);
+    free(state->side);
+    free(state->temperature);
     *state = (struct contact_state){0};
 }
 

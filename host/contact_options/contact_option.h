@@ -48,8 +48,9 @@ enum { CONTACT_FILES_MAX = 8 };
     "of walls.\n"                                                                                                      \
     "A * in FILE stands for the number of the frame. Several lines of a pair add up. With lens or hertz,\n"            \
     "spheres and walls that overlap touch at a spot of radius a: the circle in which they cut each other, or\n"        \
-    "Hertz's spot, which is 1.41 times smaller. It conducts 2 k a, or 4 k a to a wall. A wall in contact has one\n"    \
-    "temperature. Outputs then have q_radiation_W and q_conduction_W, which add up to q_W.\n"
+    "Hertz's spot, which is 1.41 times smaller. It conducts 2 k a, or 4 k a to a wall. On a wall with\n"               \
+    "temperatures=FILE a contact has the temperature of the triangle that it touches. Outputs then have\n"             \
+    "q_radiation_W and q_conduction_W, which add up to q_W.\n"
 
 /* Arguments of the options. Begin with zeroes. */
 struct contact_options {
@@ -64,6 +65,8 @@ struct contact_options {
     const char *flows; /* NULL: not wanted */
 };
 
+enum { CONTACT_NO_SIDE = UINT32_MAX };
+
 /* Contacts of one bed. */
 struct contact_state {
     const struct contact_options *options; /* NULL: no contacts */
@@ -71,11 +74,13 @@ struct contact_state {
     uint32_t *first, *second;              /* [n] as in fibrad_heat_sources */
     double *conductance;                   /* [n] in the unit of the library */
     double *flow, *error;                  /* [n] [W] */
-    double *conducted;                     /* [spheres] [W] */
-    double *gas;                           /* [n - listed] conductivities [W/(m K)] */
-    double *solid;                         /* [spheres] conductivities [W/(m K)]; NULL: not needed */
-    const struct quantity *of_solid;       /* their option */
-    const fibrad_contact_list *list;       /* of the bed of the library: contacts of overlaps and gas; NULL: none */
+    uint32_t *side; /* [n] the side of a triangle, as in fibrad_heat_sources, or CONTACT_NO_SIDE; NULL: not known */
+    double *temperature;             /* [n] contact_temperature of the sources; NULL: none */
+    double *conducted;               /* [spheres] [W] */
+    double *gas;                     /* [n - listed] conductivities [W/(m K)] */
+    double *solid;                   /* [spheres] conductivities [W/(m K)]; NULL: not needed */
+    const struct quantity *of_solid; /* their option */
+    const fibrad_contact_list *list; /* of the bed of the library: contacts of overlaps and gas; NULL: none */
     fibrad_contact_rule rule;
     double per_watt;        /* conductance over W/K */
     double wall[WALLS_MAX]; /* [W] conducted to walls */
@@ -101,6 +106,15 @@ void contacts_free(struct contact_state *state);
 /* Sets conductances that depend on temperatures [K], NaN: not known. */
 void contacts_follow(struct contact_state *state, const struct bed *bed, const double *temperature,
                      const double *wall_temperature);
+
+/* contact_places.c: finds the sides that spheres touch on the walls in `own`, which are meshes. Makes walls the second
+ * ends of contacts, and sets state->temperature to NaN. Status 0 or STATUS_MEMORY. */
+int contacts_find_places(struct contact_state *state, const struct bed *bed, const struct walls *walls,
+                         const bool own[WALLS_MAX]);
+
+/* Sets state->temperature to the temperatures of these sides, or to those of their walls. NULL: no side has one. */
+void contacts_place(struct contact_state *state, uint32_t spheres, const double *side_temperature,
+                    const double *wall_temperature);
 
 /* Finds how far temperatures are beyond the ends of tables, as quantity_excess: of the solid at spots, and of the gas.
  * Then warns of it. */

@@ -40,13 +40,13 @@ module fibrad
             reference = c_null_ptr, wall_temperature = c_null_ptr, wall_emissivity = c_null_ptr, &
             wall_power = c_null_ptr, insulated = c_null_ptr
         real(c_double) :: surroundings = 0, sigma = 0, tolerance = 0
-        integer(c_int32_t) :: sweeps_max = 0
+        integer(c_int32_t) :: sweeps_max = 0, no_errors = 0
         type(c_ptr) :: side_temperature = c_null_ptr, side_film = c_null_ptr, side_gas = c_null_ptr, &
             side_power = c_null_ptr, light = c_null_ptr, conductivity = c_null_ptr, absorbed = c_null_ptr, &
             contact_first = c_null_ptr, contact_second = c_null_ptr, conductance = c_null_ptr
         integer(c_int32_t) :: contacts = 0
-        type(c_ptr) :: film = c_null_ptr, gas = c_null_ptr, wall_film = c_null_ptr, wall_gas = c_null_ptr, &
-            stream = c_null_ptr, contact_places = c_null_ptr
+        type(c_ptr) :: contact_temperature = c_null_ptr, film = c_null_ptr, gas = c_null_ptr, wall_film = c_null_ptr, &
+            wall_gas = c_null_ptr, stream = c_null_ptr, contact_places = c_null_ptr
     end type fibrad_heat_sources
 
     type, bind(C) :: fibrad_plane
@@ -248,14 +248,14 @@ module fibrad
         integer(c_int32_t) :: stores = 0
         type(c_ptr) :: melted = c_null_ptr, wall_capacity = c_null_ptr, wall_end = c_null_ptr, &
             wall_temperature = c_null_ptr, surroundings = c_null_ptr, gas = c_null_ptr, wall_gas = c_null_ptr, &
-            side_temperature = c_null_ptr, side_gas = c_null_ptr, inlet = c_null_ptr
+            side_temperature = c_null_ptr, side_gas = c_null_ptr, contact_temperature = c_null_ptr, inlet = c_null_ptr
         real(c_double) :: step = 0, tolerance = 0
         type(c_ptr) :: power = c_null_ptr, wall_power = c_null_ptr
         real(c_double) :: surroundings_power = 0
         type(c_ptr) :: wall_energy = c_null_ptr
         real(c_double) :: surroundings_energy = 0, gas_power = 0, gas_energy = 0, held_energy = 0
-        type(c_ptr) :: convected_energy = c_null_ptr, side_energy = c_null_ptr, side_end = c_null_ptr, &
-            stored = c_null_ptr, law = c_null_ptr
+        type(c_ptr) :: convected_energy = c_null_ptr, contact_energy = c_null_ptr, side_energy = c_null_ptr, &
+            side_end = c_null_ptr, stored = c_null_ptr, law = c_null_ptr
         type(c_funptr) :: observe = c_null_funptr
         type(c_ptr) :: context = c_null_ptr
         real(c_double) :: error = 0

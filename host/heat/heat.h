@@ -348,6 +348,10 @@ struct heat {
 int heat_begin(struct heat *heat, struct bed *bed);
 void heat_end(struct heat *heat);
 
+/* Finds where spheres touch walls whose sides have temperatures of their own, or are in `more`; NULL: no more. Status 0
+ * or STATUS_MEMORY. */
+int heat_find_places(struct heat *heat, const bool *more);
+
 /* Whether a wall is insulated. */
 bool heat_insulates(const struct heat *heat);
 

@@ -95,6 +95,18 @@ static void join_insulated(struct heat *h) {
     }
 }
 
+int heat_find_places(struct heat *h, const bool *more) {
+    const struct given *given = &h->values;
+    bool own[WALLS_MAX] = {false}, any = false;
+    for (uint32_t k = 0; k < h->walls.count; ++k)
+        own[k] = given->tables.column[k].n > 0 || (more && more[k]), any = any || own[k];
+    if (h->touching.n == 0 || !any) return STATUS_OK;
+    const int status = contacts_find_places(&h->touching, h->bed, &h->walls, own);
+    if (!status) contacts_place(&h->touching, h->bed->n, given->side_temperature, given->wall_temperature);
+    h->sources.contact_temperature = h->touching.temperature;
+    return status;
+}
+
 int heat_begin(struct heat *h, struct bed *bed) {
     fibrad_heat_sources *sources = &h->sources;
     memset(&h->bed, 0, sizeof *h - offsetof(struct heat, bed));
@@ -116,6 +128,7 @@ int heat_begin(struct heat *h, struct bed *bed) {
         contacts_begin(&h->touching, &h->contacts, &h->options, bed, h->made, &h->walls, &h->solid, 1 / unit, sources);
     contacts_result(&h->touching, &h->result);
     if (!status) join_insulated(h);
+    if (!status) status = heat_find_places(h, NULL);
     if (!status) status = film_begin(h, 1 / unit);
     return status;
 }

@@ -20,10 +20,21 @@ struct coupling {
     double *side[6], *saved; /* side[SIDE_...]: [2 triangles] each; saved: [2 spheres] temperatures and melted fractions
                                 at the beginning */
     double *gas_begun;       /* [spheres] [K] */
+    struct touched *touched; /* [faces] */
+    double *contact[3];      /* [contacts] each: temperatures at the end [K], energies [J], flows of the last try [W] */
     double every, written;   /* [s] from one output to the next; time of the last one */
     uint64_t windows, tries; /* tries: of the present time window */
     size_t points;           /* of the picture, at the beginning of that window */
 };
+enum { CONTACT_END, CONTACT_ENERGY, CONTACT_FLOW };
+
+/* A face, and the contacts that end on it. */
+struct touched {
+    double begun, behind; /* [K] its temperature, and what is behind its film, at the beginning of the time window */
+    double conductance;   /* [W/K] of its contacts */
+    double supply;        /* [W] what they would bring to it at 0 K */
+};
+
 enum { SIDE_BEGUN, SIDE_END, SIDE_FILM, BEHIND_BEGUN, BEHIND_END, SIDE_ENERGY };
 
 /* ---- faces and particles ----------------------------------------------------------------------------------------- */
@@ -108,18 +119,6 @@ static int make_particles(struct heat *h, struct exchange *e) {
     return STATUS_OK;
 }
 
-/* Contacts conduct to walls of one temperature. A wall that the partner has is none, so its contacts carry nothing:
- * they become contacts of a sphere with itself, which the kernel ignores. */
-static void leave_contacts(struct heat *h, const struct exchange *e) {
-    uint32_t left = 0;
-    for (uint32_t k = 0; k < h->touching.n; ++k) {
-        const uint32_t end = h->touching.second[k];
-        if (end < h->bed->n || !e->exchanged[end - h->bed->n]) continue;
-        h->touching.second[k] = h->touching.first[k], ++left;
-    }
-    if (left > 0) message(STATUS_OK, "warning: %u contacts with faces of %s carry no heat", left, e->name);
-}
-
 /* Points the run to the arrays of sides and gas. */
 static int make_sides(struct coupling *c) {
     struct time_run *m = &c->run;
@@ -145,6 +144,84 @@ static int make_sides(struct coupling *c) {
     return STATUS_OK;
 }
 
+/* ---- contacts that end on faces ---------------------------------------------------------------------------------- */
+
+/* Finds the face that contact k touches. False: there is none. Faces of a wall are in the order of triangles. */
+static bool find_face(const struct coupling *c, uint32_t k, uint32_t *face) {
+    const struct contact_state *t = &c->run.heat->touching;
+    const struct exchange_faces *f = &c->exchange->faces;
+    if (!t->side || t->side[k] == CONTACT_NO_SIDE) return false;
+    const uint32_t wall = t->second[k] - c->run.heat->bed->n;
+    uint32_t low = f->first[wall], high = f->first[wall + 1];
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2;
+        if (f->triangle[middle] < t->side[k] / 2)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *face = low;
+    return low < f->first[wall + 1] && f->triangle[low] == t->side[k] / 2;
+}
+
+static double conductance_of(const struct contact_state *t, uint32_t k) { return t->conductance[k] / t->per_watt; }
+
+static int make_contacts(struct coupling *c) {
+    struct contact_state *t = &c->run.heat->touching;
+    const struct exchange *e = c->exchange;
+    double *block = calloc(3 * (size_t)t->n + 1, sizeof *block);
+    c->contact[0] = block, c->touched = calloc(e->faces.n + (size_t)1, sizeof *c->touched);
+    if (!block || !c->touched) return message_memory();
+    for (size_t a = 1; a < 3; ++a) c->contact[a] = block + a * t->n;
+    for (uint32_t f = 0; f < e->faces.n; ++f) c->touched[f].begun = e->faces.found[f];
+    if (!t->temperature) return STATUS_OK;
+    c->run.span.contact_temperature = c->contact[CONTACT_END], c->run.span.contact_energy = c->contact[CONTACT_ENERGY];
+    for (uint32_t k = 0, f; k < t->n; ++k) {
+        if (find_face(c, k, &f)) t->temperature[k] = e->faces.found[f];
+        c->contact[CONTACT_END][k] = t->temperature[k];
+        c->contact[CONTACT_FLOW][k] = conductance_of(t, k) * (e->particles.found[t->first[k]] - t->temperature[k]);
+    }
+    return STATUS_OK;
+}
+
+/* Contacts act at the temperatures of faces. If a face has a film, its temperature is that of the last try, and the
+ * face takes the flow of that try. As part of the film this flow is less where the face has become hotter. */
+static void set_contacts(struct coupling *c) {
+    struct contact_state *t = &c->run.heat->touching;
+    const struct exchange_faces *f = &c->exchange->faces;
+    for (uint32_t k = 0; k < f->n; ++k) {
+        struct touched *touched = &c->touched[k];
+        touched->conductance = touched->supply = 0;
+        if (c->windows > 0) continue;
+        touched->behind = f->behind[k];
+        if (!(f->film[k] >= 0)) touched->begun = f->temperature[k];
+    }
+    for (uint32_t k = 0, face; k < t->n; ++k) {
+        if (!find_face(c, k, &face)) continue;
+        struct touched *touched = &c->touched[face];
+        const double end = f->film[face] >= 0 ? f->found[face] : f->temperature[face], own = conductance_of(t, k);
+        t->temperature[k] = touched->begun, c->contact[CONTACT_END][k] = end;
+        touched->conductance += own;
+        touched->supply += c->contact[CONTACT_FLOW][k] + own * (touched->begun + end) / 2;
+    }
+}
+
+/* Adds what contacts bring to faces. */
+static void take_contacts(struct coupling *c) {
+    const uint32_t n = c->run.heat->touching.n;
+    for (uint32_t k = 0, face; k < n; ++k) {
+        if (!find_face(c, k, &face)) continue;
+        const double energy = c->contact[CONTACT_ENERGY][k];
+        c->exchange->faces.energy[face] += energy;
+        c->contact[CONTACT_FLOW][k] = energy / c->exchange->length;
+    }
+}
+
+/* The temperature behind a film that takes the heat of contacts, too. `film` has both [W/(m2 K)]. */
+static double behind_both(const struct touched *touched, double behind, double film, double area) {
+    return behind + (touched->supply - touched->conductance * behind) / (film * area);
+}
+
 /* ---- one time window --------------------------------------------------------------------------------------------- */
 
 /* Sets what the partner gives at the end of the time window. In the first one this holds from the beginning on. */
@@ -153,15 +230,19 @@ static void set_given(struct coupling *c) {
     struct heat *h = c->run.heat;
     const struct exchange_faces *f = &e->faces;
     const bool first = c->windows == 0;
+    set_contacts(c);
     for (uint32_t k = 0; k < f->n; ++k) {
+        const struct touched *touched = &c->touched[k];
         const uint32_t t = f->triangle[k];
         const bool film = f->film[k] >= 0; /* not NaN */
+        const double both_films = fmax(f->film[k], FILM_LEAST) + touched->conductance / f->area[k];
         const bool both = h->walls.meshes->front[t] != FIBRAD_NO_WALL && h->walls.meshes->back[t] != FIBRAD_NO_WALL;
         for (size_t s = 2 * (size_t)t; s < 2 * (size_t)t + 2; ++s) { /* both sides share the film of a face */
-            c->side[SIDE_FILM][s] = film ? fmax(f->film[k], FILM_LEAST) * c->run.square_metres / (both ? 2 : 1) : 0;
-            c->side[SIDE_END][s] = film ? NAN : f->temperature[k], c->side[BEHIND_END][s] = f->behind[k];
+            c->side[SIDE_FILM][s] = film ? both_films * c->run.square_metres / (both ? 2 : 1) : 0;
+            c->side[SIDE_END][s] = film ? NAN : f->temperature[k];
             if (first || film) c->side[SIDE_BEGUN][s] = c->side[SIDE_END][s];
-            if (first) c->side[BEHIND_BEGUN][s] = c->side[BEHIND_END][s];
+            c->side[BEHIND_BEGUN][s] = behind_both(touched, touched->behind, both_films, f->area[k]);
+            c->side[BEHIND_END][s] = behind_both(touched, f->behind[k], both_films, f->area[k]);
         }
     }
     for (uint32_t i = 0; i < e->particles.n && e->gives_gas; ++i) {
@@ -189,6 +270,7 @@ static void take_found(struct coupling *c) {
         e->faces.found[k] = side_joined(span->side_end + s, mean_of_sides);
         e->faces.energy[k] = isnan(energy) ? 0 : energy;
     }
+    take_contacts(c);
     const struct film_state *films = &c->run.heat->films;
     for (uint32_t i = 0; i < e->particles.n; ++i) {
         e->particles.found[i] = span->temperature[i];
@@ -230,6 +312,7 @@ static void end_window(struct coupling *c) {
     struct time_run *m = &c->run;
     struct heat *h = m->heat;
     struct report *report = &h->options.report;
+    const struct exchange_faces *f = &c->exchange->faces;
     const size_t sides = h->walls.meshes ? 2 * (size_t)h->walls.meshes->triangles.n : 0;
     double faces = 0, stored = 0;
     time_keep(m);
@@ -237,7 +320,12 @@ static void end_window(struct coupling *c) {
     for (size_t s = 0; s < sides; ++s)
         c->side[SIDE_BEGUN][s] = c->side[SIDE_END][s], c->side[BEHIND_BEGUN][s] = c->side[BEHIND_END][s];
     if (c->exchange->gives_gas) memcpy(c->gas_begun, h->films.end, h->bed->n * sizeof *c->gas_begun);
-    for (uint32_t k = 0; k < c->exchange->faces.n; ++k) faces += c->exchange->faces.energy[k];
+    for (uint32_t k = 0; k < f->n; ++k) {
+        faces += f->energy[k];
+        c->touched[k].begun = f->found[k], c->touched[k].behind = f->behind[k];
+    }
+    for (uint32_t k = 0, face; k < h->touching.n; ++k)
+        if (find_face(c, k, &face)) h->touching.temperature[k] = f->found[face];
     for (uint32_t i = 0; i < h->bed->n; ++i) stored += m->stored[i];
     report_begin(report);
     report_count(report, "window", c->windows++);
@@ -288,9 +376,10 @@ int couple_run(struct heat *h, const struct partner *partner, struct exchange *e
     if (!status) status = check_walls(h, e);
     if (!status) status = make_faces(h, e);
     if (!status) status = make_particles(h, e);
-    if (!status) leave_contacts(h, e);
+    if (!status) status = heat_find_places(h, e->exchanged);
     if (!status) status = time_begin(&c.run);
     if (!status) status = make_sides(&c);
+    if (!status) status = make_contacts(&c);
     if (!status) status = partner->begin(e);
     if (!status) status = run_windows(&c, partner, ended);
     if (c.tries > 0) keep_state(&c, true); /* the partner has failed within a time window */
@@ -299,6 +388,8 @@ int couple_run(struct heat *h, const struct partner *partner, struct exchange *e
     progress_stop(&h->options.progress);
     time_end(&c.run);
     free(c.side[0]);
+    free(c.contact[0]);
+    free(c.touched);
     free(e->faces.centre);
     free(e->faces.triangle);
     free(e->particles.centre);

@@ -70,7 +70,7 @@ int fibrad_stepping_compare(fibrad_bed *bed, const fibrad_heat_sources *s, uint6
     int status = fibrad_network_solve(t->network, &bed->team, s, t->allowed, &factors);
     if (status || (t->corrected && !powers_changed(bed, s))) return status;
     fibrad_heat_sources given = *s; /* a sphere has a temperature or a power, not both */
-    given.power = NULL;
+    given.power = NULL, given.no_errors = 1;
     status = fibrad_bed_solve_now(bed, &given, &patches);
     if (status) return status;
     for (uint32_t i = 0; i < bed->facts.spheres; ++i) {

@@ -347,7 +347,7 @@ typedef struct fibrad_store {
  *
  * The side_energy of all sides of a wall adds up to its wall_energy. What the wall gains through contacts and its film
  * is spread over its sides by area. If sources->absorbed is set, the sum has the light that the wall absorbs, and
- * leaves out contacts and film. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to
+ * leaves out contacts and film. What passes through contacts that have a contact_temperature is always left out. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to
  * rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
@@ -367,6 +367,7 @@ typedef struct fibrad_span {
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
     const double *side_temperature, *side_gas; /* K, [2 triangles], at the end, linear in between; NULL: constant */
+    const double *contact_temperature; /* K, [contacts], at the end, linear in between; NULL: constant */
     const double *inlet;          /* K, one number, inlet of a stream at the end, linear in between; NULL: constant */
     double step;                  /* s; all steps are equal and at most this long; 0: automatic steps */
     double tolerance;             /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
@@ -378,6 +379,7 @@ typedef struct fibrad_span {
     double gas_power, gas_energy; /* W and J, out: the same of the gas of all films */
     double held_energy;           /* J, out: gained by held spheres during the span */
     double *convected_energy;     /* J, [spheres], out: gained from gas during the span; may be NULL */
+    double *contact_energy;       /* J, [contacts], out: from the first end to the second; may be NULL */
     double *side_energy;          /* J, [2 triangles], out: gained during the span; may be NULL */
     double *side_end;             /* K, [2 triangles], out: temperatures at the end; may be NULL */
     double *stored;               /* J, [spheres], out: heat stored during the span; of held spheres 0; may be NULL */
@@ -399,16 +401,17 @@ typedef struct fibrad_span {
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
  * or if there are contacts, films or clumps. They do, too, if the temperature of a wall or of a side is to be found.
- * Those of walls with a capacity are. They also do if convected_energy, side_energy or side_end is wanted.
+ * Those of walls with a capacity are. They also do if convected_energy, contact_energy, side_energy or side_end is
+ * wanted.
  *
  * The members of a clump begin at one temperature, equally melted. They have the same store. All or none are held.
  *
  *   field of sources                    use
- *   temperature, storage, reference     not used
+ *   temperature, storage, reference, no_errors    not used
  *   power                               constant
  *   emissivity, wall_emissivity         constant, or where a law begins
  *   wall_temperature, surroundings, gas, wall_gas    at the beginning of the span; NaN: a wall's is to be found
- *   side_temperature, side_gas          at the beginning of the span
+ *   side_temperature, side_gas, contact_temperature    at the beginning of the span
  *   wall_power, insulated, side_film, side_power    constant
  *   conductivity, conductance, film, wall_film    constant, or changed by a law; contacts act on means of surfaces
  *   stream                              inlet: at the beginning of the span; gas: out, at the end

@@ -43,4 +43,10 @@ static inline double nearest_on_triangle(double corner[3][3], double to[3], bool
     return fabs(height) * sqrt(square);
 }
 
+/* Whether a place of a wall lies beside a nearer one, both relative to the origin: in front of the plane through the
+ * nearer place by no more than a tenth of the distance. */
+static inline bool lies_beside(const double place[3], const double nearer[3]) {
+    return inner(place, nearer) > 0.9 * inner(nearer, nearer);
+}
+
 #endif

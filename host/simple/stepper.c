@@ -50,6 +50,7 @@ struct stepper {
     size_t sides;              /* 2 triangles; 0: nothing is wanted of sides or of convection */
     double *side_temperature, *side_gas, *side_flux, *side_found, *side_energy; /* [sides], fluxes of two stages */
     double *convected, *convected_energy;                                       /* [spheres], the first of two stages */
+    double *contact_temperature, *contact_flow, *contact_energy;                /* [contacts], flows of two stages */
 };
 
 static double power_of(const struct stepper *m, uint32_t i) { return m->given->power ? m->given->power[i] : 0; }
@@ -84,9 +85,9 @@ static double area_of_triangle(const fibrad_triangles *mesh, size_t t) {
 
 static double share_between(double from, double to, double share) { return from + share * (to - from); }
 
-/* Sets values of sides at a share of the span. One that is missing at the beginning is constant. */
-static void set_sides(const struct stepper *m, double *now, const double *from, const double *to, double share) {
-    for (size_t k = 0; to && k < m->sides; ++k)
+/* Sets n values at a share of the span. One that is missing at the beginning is constant. */
+static void set_values(size_t n, double *now, const double *from, const double *to, double share) {
+    for (size_t k = 0; to && k < n; ++k)
         now[k] = from && !isnan(from[k]) ? share_between(from[k], to[k], share) : to[k];
 }
 
@@ -104,8 +105,10 @@ static void set_outside(struct stepper *m, double time) {
     for (uint32_t b = 0; m->given->wall_gas && b < m->bed->facts.walls; ++b)
         m->t->wall_gas[b] =
             span->wall_gas ? share_between(m->given->wall_gas[b], span->wall_gas[b], share) : m->given->wall_gas[b];
-    set_sides(m, m->side_temperature, m->given->side_temperature, span->side_temperature, share);
-    set_sides(m, m->side_gas, m->given->side_gas, span->side_gas, share);
+    set_values(m->sides, m->side_temperature, m->given->side_temperature, span->side_temperature, share);
+    set_values(m->sides, m->side_gas, m->given->side_gas, span->side_gas, share);
+    set_values(m->given->contacts, m->contact_temperature, m->given->contact_temperature, span->contact_temperature,
+               share);
     if (span->inlet) m->stream.inlet = share_between(m->given->stream->inlet, *span->inlet, share);
     m->sources.surroundings =
         span->surroundings ? share_between(m->given->surroundings, *span->surroundings, share) : m->given->surroundings;
@@ -282,6 +285,7 @@ static int solve_stage(struct stepper *m, int stage, double time, double length)
     set_outside(m, time);
     m->result.wall_power = m->stage_walls[stage];
     if (m->convected) m->result.convected = m->convected + (size_t)stage * m->bed->facts.spheres;
+    if (m->convected) m->result.contact_flow = m->contact_flow + (size_t)stage * m->given->contacts;
     for (int k = 0; k < NEWTON_MAX; ++k) {
         set_surfaces(m);
         find_conducts(m);
@@ -363,6 +367,8 @@ static void accept_step(struct stepper *m, double step, double error) {
             m->side_energy[k] += share[stage] * m->side_flux[(size_t)stage * m->sides + k];
         for (size_t i = 0; m->convected && i < m->bed->facts.spheres; ++i)
             m->convected_energy[i] += share[stage] * m->convected[(size_t)stage * m->bed->facts.spheres + i];
+        for (size_t k = 0; m->convected && k < m->given->contacts; ++k)
+            m->contact_energy[k] += share[stage] * m->contact_flow[(size_t)stage * m->given->contacts + k];
     }
     span->error = larger_of(span->error, error);
     ++span->steps, ++t->steps;
@@ -498,6 +504,7 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
         if (s->contact_first[k] >= n + walls || s->contact_second[k] >= n + walls) return FIBRAD_E_ARGUMENT;
     if (s->film && !s->gas && !s->stream) return FIBRAD_E_ARGUMENT;
     if (span->side_gas && !(s->side_gas && s->side_film)) return FIBRAD_E_ARGUMENT;
+    if (span->contact_temperature && !s->contact_temperature) return FIBRAD_E_ARGUMENT;
     if ((span->gas && !s->gas) || ((span->wall_gas || s->wall_film) && !s->wall_gas) || (span->inlet && !s->stream))
         return FIBRAD_E_ARGUMENT;
     return check_stores(bed, s, span);
@@ -505,7 +512,8 @@ static int check_span(fibrad_bed *bed, const fibrad_heat_sources *s, const fibra
 
 /* Whether a span has or wants what only patches tell. */
 static bool wants_more(const fibrad_span *span) {
-    return span->side_temperature || span->side_gas || span->side_energy || span->side_end || span->convected_energy;
+    return span->side_temperature || span->side_gas || span->side_energy || span->side_end || span->convected_energy ||
+           span->contact_temperature || span->contact_energy;
 }
 
 /* Whether exchange factors can stand for patches: surfaces stay as they are, spheres have one temperature each, no
@@ -520,12 +528,15 @@ static bool factors_suffice(const fibrad_bed *bed, const fibrad_heat_sources *s,
     return suffice;
 }
 
-/* Turns what sides gain per area into what they gain. What their wall gains besides, through contacts and its film, is
- * spread evenly. */
+/* Turns what sides gain per area into what they gain. What their wall gains besides, through its film and contacts that
+ * have no temperature of their own, is spread evenly. */
 static void share_out_walls(const struct stepper *m, fibrad_span *span) {
     const fibrad_triangles *mesh = m->bed->config.triangles;
     double left[FIBRAD_WALLS_MAX], area[FIBRAD_WALLS_MAX] = {0};
     memcpy(left, m->span->wall_energy, m->bed->facts.walls * sizeof *left);
+    for (uint32_t k = 0; m->given->contact_temperature && k < m->given->contacts; ++k)
+        if (!isnan(m->given->contact_temperature[k]))
+            left[m->given->contact_second[k] - m->bed->facts.spheres] -= m->contact_energy[k];
     for (int pass = 0; pass < 2; ++pass)
         for (size_t k = 0; k < m->sides; ++k) {
             const uint32_t t = (uint32_t)(k / 2), b = k % 2 == 0   ? mesh->front[t]
@@ -558,6 +569,8 @@ static void end_span(const struct stepper *m, fibrad_span *span) {
     }
     if (m->sides > 0) share_out_walls(m, span);
     if (span->convected_energy && n > 0) memcpy(span->convected_energy, m->convected_energy, n * sizeof *t->power);
+    if (span->contact_energy && m->given->contacts > 0)
+        memcpy(span->contact_energy, m->contact_energy, m->given->contacts * sizeof *t->power);
     if (span->power) memcpy(span->power, t->power, n * sizeof *t->power);
     for (uint32_t b = 0; b < walls; ++b) {
         if (span->wall_power) span->wall_power[b] = m->stage_walls[1][b];
@@ -606,19 +619,22 @@ static void begin_walls(struct stepper *m) {
     m->result.wall_convected = t->wall_convected;
 }
 
-/* Takes memory for sides and convection. */
+/* Takes memory for sides, convection and contacts. */
 static int begin_more(struct stepper *m, const fibrad_span *span) {
-    const size_t n = m->bed->facts.spheres,
+    const size_t n = m->bed->facts.spheres, contacts = m->given->contacts,
                  sides = m->bed->config.triangles ? 2 * (size_t)m->bed->config.triangles->n : 0;
     if (!wants_more(span)) return FIBRAD_OK;
-    double *block = calloc(6 * sides + 3 * n + 1, sizeof *block);
+    double *block = calloc(6 * sides + 3 * n + 4 * contacts + 1, sizeof *block);
     if (!block) return FIBRAD_E_MEMORY;
     m->sides = sides;
     m->side_temperature = block, m->side_gas = block + sides, m->side_found = block + 2 * sides;
     m->side_energy = block + 3 * sides, m->side_flux = block + 4 * sides;
     m->convected_energy = block + 6 * sides, m->convected = m->convected_energy + n;
+    m->contact_temperature = m->convected + 2 * n, m->contact_energy = m->contact_temperature + contacts;
+    m->contact_flow = m->contact_energy + contacts;
     if (span->side_temperature) m->sources.side_temperature = m->side_temperature;
     if (span->side_gas) m->sources.side_gas = m->side_gas;
+    if (span->contact_temperature) m->sources.contact_temperature = m->contact_temperature;
     return FIBRAD_OK;
 }
 
@@ -635,7 +651,7 @@ static int advance_span(fibrad_bed *bed, const fibrad_heat_sources *sources, fib
     for (size_t k = 0; k < 2; ++k) m.stage_walls[k] = t->wall_stage + (k + 1) * walls;
     m.sources.temperature = t->given, m.sources.power = t->source;
     m.sources.storage = t->storage, m.sources.reference = t->guess;
-    m.sources.wall_temperature = t->wall_stage;
+    m.sources.wall_temperature = t->wall_stage, m.sources.no_errors = 1;
     if (span->gas) m.sources.gas = t->gas;
     if (span->wall_gas) m.sources.wall_gas = t->wall_gas;
     begin_walls(&m);

@@ -10,8 +10,6 @@
 #include "simple/contact_list.h"
 #include "simple/nearest.h"
 
-#define BESIDE 0.9
-
 /* A place of a wall within reach of a sphere. */
 struct touch {
     uint32_t sphere, wall;
@@ -72,8 +70,7 @@ static int by_distance(const void *a, const void *b) {
 static bool is_beside(const struct touches *all, const bool *counts, size_t k) {
     const struct touch *touch = &all->touch[k];
     for (size_t j = k; j-- > 0 && all->touch[j].sphere == touch->sphere && all->touch[j].wall == touch->wall;)
-        if (counts[j] && inner(touch->to, all->touch[j].to) > BESIDE * all->touch[j].distance * all->touch[j].distance)
-            return true;
+        if (counts[j] && lies_beside(touch->to, all->touch[j].to)) return true;
     return false;
 }
 

@@ -459,7 +459,8 @@ static double unsettled_emission(const fibrad_heat *heat, uint32_t b, double are
     return squared(RESIDUAL_ERROR * heat->solution.unsettled[b] / (eps > 0 ? eps * area : area));
 }
 
-/* Finds what emissions that are found have in common. */
+/* Finds what emissions that are found have in common. If the sides of a mesh have temperatures of their own, they
+ * exchange heat among themselves. */
 static void find_common(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     double powers = 0, square = 0, distances[2] = {0, 0}, spheres = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
@@ -471,8 +472,12 @@ static void find_common(const fibrad_heat *heat, fibrad_heat_errors *errors) {
             distances[kind] += distance_of(errors, &own);
             if (kind == 0) errors->changed += changed_emission(heat, b), spheres++;
         } else {
-            const double power = fibrad_abs(heat->solution.power[b]);
-            errors->given += power * heat->sources.emission[b], powers += power;
+            const double *excess = fibrad_heat_excess(heat, b), power = fibrad_abs(heat->solution.power[b]);
+            if (excess == NULL) errors->given += power * heat->sources.emission[b], powers += power;
+            for (uint32_t a = heat->first[b]; a < heat->first[b + 1] && excess != NULL; a++) {
+                const double net = fibrad_abs(heat->solution.net[a]);
+                errors->given += net * (heat->sources.emission[b] + excess[a - heat->first[b]]), powers += net;
+            }
             if (b < fibrad_heat_beyond(heat, 0)) square += fibrad_heat_radiated_error(heat, errors, b);
         }
     }

@@ -8,26 +8,18 @@ static void put_wanted(double *values, uint32_t k, double value) {
     if (values != NULL) values[k] = value;
 }
 
-/* A temperature and its error. */
+/* What a temperature differs by from the mean of its surface, and its error. */
 typedef struct measured {
     double value, error;
 } measured;
 
-/* The temperature in the centre of a sphere. It is q r^2/(6 k) above the mean of the surface, for a source of q per
- * volume that is uniform inside. Such a source gives off the net power and the light that is absorbed. */
-static measured centre_of(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b, measured surface) {
-    const double slope = 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
-    const double gained = heat->solution.power[b] + fibrad_heat_conducted(heat, b) + fibrad_heat_absorbed(heat, b);
-    const double error = slope * fibrad_sqrt(fibrad_heat_radiated_error(heat, errors, b));
-    return (measured){surface.value - slope * gained, fibrad_sqrt(surface.error * surface.error + error * error)};
-}
-
-/* The temperature of the hottest (sign 1) or coldest (-1) place of a sphere minus the mean of its surface. value,
- * patch: emissions of this place and of the patch that is hottest or coldest. open: as for fibrad_heat_place_error.
- * spot: the temperature of a contact there. */
-static measured extreme_of(const fibrad_heat *heat, uint32_t b, double sign, double value, double patch, bool open,
-                           double spot) {
-    const double t = heat->sources.temperature[b], slope = 4 * heat->sources.sigma * t * t * t;
+/* The temperature of the hottest or the coldest place of a sphere minus the mean of its surface. */
+static measured extreme_of(const fibrad_heat *heat, uint32_t b, bool hottest) {
+    const fibrad_heat_span *span = &heat->solution.span[b];
+    const double t = heat->sources.temperature[b], slope = 4 * heat->sources.sigma * t * t * t, sign = hottest ? 1 : -1;
+    const double value = hottest ? span->largest : span->least, patch = hottest ? span->high : span->low;
+    const double spot = hottest ? span->hottest_spot : span->coldest_spot;
+    const bool open = hottest ? span->open_high : span->open_low;
     measured extreme = {0, 0};
     if (fibrad_heat_conducts(heat, b))
         extreme = (measured){value / slope, fibrad_heat_place_error(heat, b, value, patch, open) / slope};
@@ -36,44 +28,32 @@ static measured extreme_of(const fibrad_heat *heat, uint32_t b, double sign, dou
     return extreme;
 }
 
-/* Hands out the temperatures on the surface and in the centre of a sphere. */
-static void read_inside(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b, measured mean,
-                        const fibrad_heat_result *result) {
-    const fibrad_heat_span *span = &heat->solution.span[b];
-    const uint32_t i = heat->order[b];
-    const measured low = extreme_of(heat, b, -1, span->least, span->low, span->open_low, span->coldest_spot),
-                   high = extreme_of(heat, b, 1, span->largest, span->high, span->open_high, span->hottest_spot),
-                   centre = centre_of(heat, errors, b, mean);
-    const double worst = fibrad_max(low.error, high.error);
-    put_wanted(result->least_temperature, i, mean.value + low.value);
-    put_wanted(result->largest_temperature, i, mean.value + high.value);
-    put_wanted(result->surface_error, i, fibrad_sqrt(mean.error * mean.error + worst * worst));
-    put_wanted(result->centre_temperature, i, centre.value);
-    put_wanted(result->centre_error, i, centre.error);
+/* The centre of a sphere is q r^2/(6 k) above the mean of its surface, for a source of q per volume that is uniform
+ * inside. This is how much colder it is per power that the sphere gains. */
+static double slope_inside(const fibrad_heat *heat, uint32_t b) {
+    return 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
 }
 
 /* The temperature of a surface. An insulated wall has the one at which a black wall would emit what it sends back. */
-static measured temperature_of(const fibrad_heat *heat, const fibrad_heat_errors *errors, uint32_t b) {
-    const double t = fibrad_heat_is_insulated(heat, b)
-                         ? fibrad_heat_temperature(heat, fibrad_heat_mean(heat, b, heat->solution.radiosity))
-                         : heat->sources.temperature[b];
-    return (measured){t, fibrad_heat_temperature_error(heat, errors, b, t)};
+static double temperature_of(const fibrad_heat *heat, uint32_t b) {
+    return fibrad_heat_is_insulated(heat, b)
+               ? fibrad_heat_temperature(heat, fibrad_heat_mean(heat, b, heat->solution.radiosity))
+               : heat->sources.temperature[b];
 }
 
-/* Hands out temperatures and their errors. */
-static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_errors *errors,
-                              const fibrad_heat_result *result) {
+/* Hands out temperatures. Inside, a sphere gives off its net power and the light that it absorbs. */
+static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->spheres; b++) {
-        const measured t = temperature_of(heat, errors, b);
-        put_wanted(result->temperature, heat->order[b], t.value);
-        put_wanted(result->temperature_error, heat->order[b], t.error);
-        read_inside(heat, errors, b, t, result);
+        const uint32_t i = heat->order[b];
+        const double mean = temperature_of(heat, b);
+        const double gained = heat->solution.power[b] + fibrad_heat_conducted(heat, b) + fibrad_heat_absorbed(heat, b);
+        put_wanted(result->temperature, i, mean);
+        put_wanted(result->least_temperature, i, mean + extreme_of(heat, b, false).value);
+        put_wanted(result->largest_temperature, i, mean + extreme_of(heat, b, true).value);
+        put_wanted(result->centre_temperature, i, mean - slope_inside(heat, b) * gained);
     }
-    for (uint32_t k = 0; k < heat->given_walls; k++) {
-        const measured t = temperature_of(heat, errors, fibrad_heat_body(heat, heat->slot[k]));
-        put_wanted(result->wall_temperature, k, t.value);
-        put_wanted(result->wall_temperature_error, k, t.error);
-    }
+    for (uint32_t k = 0; k < heat->given_walls; k++)
+        put_wanted(result->wall_temperature, k, temperature_of(heat, fibrad_heat_body(heat, heat->slot[k])));
 }
 
 /* Whether all temperatures that were to be found exist. */
@@ -126,15 +106,14 @@ static void read_beyond(const fibrad_heat *heat, uint32_t k, fibrad_heat_result 
     *power_of_slot(heat, fibrad_heat_facing(heat, k), result) += heat->solution.power[beyond] - taken - pair.net / 2;
 }
 
-/* Hands out the net powers of spheres and walls, and what contacts conduct. */
-static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *errors, fibrad_heat_result *result) {
+/* Hands out the net powers of spheres, walls and gas, and what contacts conduct. */
+static void read_net_powers(const fibrad_heat *heat, fibrad_heat_result *result) {
     const fibrad_contacts *c = &heat->contacts;
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const double conducted = fibrad_heat_conducted(heat, b), convected = fibrad_heat_convected(heat, b);
         result->power[heat->order[b]] = heat->solution.power[b] + conducted;
         put_wanted(result->conducted, heat->order[b], conducted - convected);
         put_wanted(result->convected, heat->order[b], convected);
-        put_wanted(result->power_error, heat->order[b], fibrad_heat_power_error(heat, errors, b));
     }
     for (uint32_t k = 0; k < heat->given_walls; k++) {
         const uint32_t slot = heat->slot[k], b = fibrad_heat_body(heat, slot);
@@ -142,40 +121,64 @@ static void read_net_powers(const fibrad_heat *heat, const fibrad_heat_errors *e
         result->wall_power[k] = heat->solution.power[b] + conducted;
         put_wanted(result->wall_conducted, k, conducted - convected);
         put_wanted(result->wall_convected, k, convected);
-        put_wanted(result->wall_error, k, fibrad_heat_power_error(heat, errors, b));
-        put_wanted(result->wall_absorbed, k, fibrad_heat_absorbs(heat, b));
+        if (result->wall_absorbed != NULL) result->wall_absorbed[k] = fibrad_heat_absorbs(heat, b);
         put_wanted(result->wall_area, k,
                    slot < FIBRAD_MESHES ? fibrad_heat_wall_area(heat, slot) : fibrad_scene_wall_area(heat->scene, k));
     }
-    for (uint32_t k = 0; k < c->count; k++)
-        put_wanted(result->contact_flow, k,
-                   c->conductance[k] * (c->temperature[c->node[c->first[k]]] - c->temperature[c->node[c->second[k]]]) +
-                       (heat->spots.entering != NULL ? heat->spots.offset[k] : 0));
-    for (uint32_t k = 0; k < c->count; k++) put_wanted(result->contact_error, k, fibrad_heat_flow_error(heat, k));
+    for (uint32_t k = 0; k < c->count && result->contact_flow != NULL; k++)
+        result->contact_flow[k] =
+            c->conductance[k] * (c->temperature[c->node[c->first[k]]] -
+                                 fibrad_heat_at_contact(heat, k, c->temperature[c->node[c->second[k]]])) +
+            (heat->spots.entering != NULL ? heat->spots.offset[k] : 0);
     result->surroundings_power = heat->solution.power[heat->bodies - 1];
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {
         if (heat->openings >> k & 1) result->surroundings_power += heat->solution.power[fibrad_heat_body(heat, k)];
         read_beyond(heat, k, result);
     }
+    result->gas_power = 0;
+    for (uint32_t b = 0; b < heat->bodies; b++) result->gas_power -= fibrad_heat_convected(heat, b);
 }
 
-/* Hands out what the gas gains. It errs by at most what all temperatures at films err by. By the balance of all powers
- * it errs by as much as the other powers that are not given. */
-static void read_gas(const fibrad_heat *heat, const fibrad_heat_errors *errors, fibrad_heat_result *result) {
-    const fibrad_contacts *c = &heat->contacts;
-    double most = 0, others = result->surroundings_error * result->surroundings_error;
-    result->gas_power = result->gas_error = 0;
-    if (!c->joins) return;
+/* The error of what the gas gains: at most what all temperatures at films err by. By the balance of all powers it is as
+ * large as that of the other powers that are not given. outside: that of the surroundings. */
+static double gas_error_of(const fibrad_heat *heat, const fibrad_heat_errors *errors, double outside) {
+    double most = 0, others = outside * outside;
+    if (!heat->contacts.joins) return 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
-        result->gas_power -= fibrad_heat_convected(heat, b);
-        most += c->film[b] * c->error[b];
+        most += heat->contacts.film[b] * heat->contacts.error[b];
         if (!fibrad_heat_is_free(heat, b)) others += fibrad_heat_radiated_error(heat, errors, b);
     }
-    result->gas_error = fibrad_min(most, fibrad_sqrt(others));
+    return fibrad_min(most, fibrad_sqrt(others));
+}
+
+/* Hands out all estimated errors. */
+static void read_errors(const fibrad_heat *heat, fibrad_heat_result *result) {
+    fibrad_heat_errors errors;
+    fibrad_heat_find_errors(heat, &errors);
+    for (uint32_t b = 0; b < heat->spheres; b++) {
+        const uint32_t i = heat->order[b];
+        const double mean = fibrad_heat_temperature_error(heat, &errors, b, temperature_of(heat, b));
+        const double worst = fibrad_max(extreme_of(heat, b, false).error, extreme_of(heat, b, true).error);
+        const double inside = slope_inside(heat, b) * fibrad_sqrt(fibrad_heat_radiated_error(heat, &errors, b));
+        put_wanted(result->power_error, i, fibrad_heat_power_error(heat, &errors, b));
+        put_wanted(result->temperature_error, i, mean);
+        put_wanted(result->surface_error, i, fibrad_sqrt(mean * mean + worst * worst));
+        put_wanted(result->centre_error, i, fibrad_sqrt(mean * mean + inside * inside));
+    }
+    for (uint32_t k = 0; k < heat->given_walls; k++) {
+        const uint32_t b = fibrad_heat_body(heat, heat->slot[k]);
+        put_wanted(result->wall_error, k, fibrad_heat_power_error(heat, &errors, b));
+        put_wanted(result->wall_temperature_error, k,
+                   fibrad_heat_temperature_error(heat, &errors, b, temperature_of(heat, b)));
+    }
+    for (uint32_t k = 0; k < heat->contacts.count; k++)
+        put_wanted(result->contact_error, k, fibrad_heat_flow_error(heat, k));
+    result->surroundings_error = fibrad_heat_surroundings_error(heat, &errors);
+    result->gas_error = gas_error_of(heat, &errors, result->surroundings_error);
+    fibrad_heat_mean_errors(heat, &errors, &result->error_patches, &result->error_beams);
 }
 
 int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
-    fibrad_heat_errors errors;
     if (heat == NULL || result == NULL || (heat->spheres > 0 && result->power == NULL)) return FIBRAD_E_ARGUMENT;
     if (heat->given_walls > 0 && result->wall_power == NULL) return FIBRAD_E_ARGUMENT;
     if (heat->solution.phase != FIBRAD_HEAT_DONE || !fibrad_heat_scene_kept(heat)) return FIBRAD_E_STATE;
@@ -183,12 +186,9 @@ int fibrad_heat_read(const fibrad_heat *heat, fibrad_heat_result *result) {
         result->least_temperature != NULL || result->largest_temperature != NULL || result->surface_error != NULL;
     if (heat->sources.conducts && heat->solution.steps && inside)
         fibrad_heat_find_extremes(heat, 0, heat->spheres, heat->near);
-    fibrad_heat_find_errors(heat, &errors);
-    read_net_powers(heat, &errors, result);
-    read_temperatures(heat, &errors, result);
-    result->surroundings_error = fibrad_heat_surroundings_error(heat, &errors);
-    read_gas(heat, &errors, result);
-    fibrad_heat_mean_errors(heat, &errors, &result->error_patches, &result->error_beams);
+    read_net_powers(heat, result);
+    read_temperatures(heat, result);
+    if (!heat->sources.asked.no_errors) read_errors(heat, result);
     result->sweeps = heat->solution.sweeps;
     result->residual = heat->solution.scale > 0 ? fibrad_sqrt(heat->solution.slope / heat->solution.scale) : 0;
     return all_found(heat) ? FIBRAD_OK : FIBRAD_E_UNSOLVABLE;

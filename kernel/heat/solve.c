@@ -322,6 +322,7 @@ static double scale_of_contacts(fibrad_heat *heat, double emission) {
         c->stiff[b] = joined ? stiffness_of_joined(heat, b) : 0;
         c->missing[b] = joined ? heat->sources.given_power[b] - heat->sources.storage[b] * emission : 0;
     }
+    fibrad_heat_add_places(heat, c->missing);
     fibrad_heat_sum_clumps(heat, c->stiff);
     fibrad_heat_sum_clumps(heat, c->missing);
     fibrad_contact_gains(c, c->temperature, c->missing);
@@ -448,6 +449,7 @@ static void guess_joined(fibrad_heat *heat) {
         c->supply[b] =
             heat->sources.given_power[b] + (c->stiff[b] - heat->sources.storage[b]) * heat->sources.emission[b];
     }
+    fibrad_heat_add_places(heat, c->supply);
     sum_balances(heat);
     find_streaming(c, BALANCED_ROUGHLY);
     fibrad_heat_follow_leaders(heat, c->temperature);
@@ -614,7 +616,7 @@ static void finish_powers(fibrad_heat *heat) {
     find_powers(heat, heat->solution.power);
     find_emissions(heat);
     if (heat->sources.free_level) fix_level(heat);
-    heat->solution.steps = false;
+    heat->solution.steps = heat->sources.asked.no_errors;
     for (uint32_t b = 0; b < heat->bodies; b++)
         heat->solution.steps = heat->solution.steps || heat->sources.storage[b] > 0;
     if (heat->sources.conducts) {
@@ -635,7 +637,8 @@ static void finish_powers(fibrad_heat *heat) {
     }
     for (uint32_t a = 0; a < heat->patches && !heat->sources.sides; a++)
         heat->solution.detail[a] += heat->solution.radiosity[a];
-    send_means(heat);
+    heat->solution.phase = FIBRAD_HEAT_DONE;
+    if (!heat->sources.asked.no_errors) send_means(heat);
 }
 
 /* The residual of all patches is mostly that of the spheres. What single walls gain may be much less right, above all
@@ -1010,7 +1013,6 @@ static int end_sweep(fibrad_heat *heat) {
     if (heat->solution.phase == FIBRAD_HEAT_CHECK) {
         for (uint32_t b = 0; b < heat->bodies; b++) heat->samples.halves[b] = fibrad_heat_sum(heat, b, sum);
         heat->solution.phase = FIBRAD_HEAT_DONE;
-        heat->solution.warm = true;
         return FIBRAD_OK;
     }
     if (heat->solution.sweeps++ >= heat->sources.limit) return FIBRAD_E_UNSETTLED;
@@ -1052,6 +1054,6 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved) {
         return status;
     }
     fibrad_zero(heat->swept, heat->config.parts);
-    *solved = heat->solution.phase == FIBRAD_HEAT_DONE;
+    *solved = heat->solution.warm = heat->solution.phase == FIBRAD_HEAT_DONE;
     return FIBRAD_OK;
 }

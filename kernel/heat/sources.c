@@ -129,10 +129,20 @@ static film_data film_of(const fibrad_heat *heat, const fibrad_heat_sources *s, 
     return (film_data){film[k], gas != NULL ? gas[k] : __builtin_nan("")};
 }
 
+/* Whether an end of a contact, by the caller's number, is a wall of given temperature that is not insulated. */
+static bool may_have_places(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t end) {
+    if (end < heat->spheres) return false;
+    const uint32_t b = end - heat->spheres;
+    return is_given(s->wall_temperature[b]) && (s->insulated == NULL || s->insulated[b] == 0);
+}
+
 /* The reason why a contact is not valid. */
 static int contact_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t k) {
     const uint32_t ends = heat->spheres + heat->given_walls;
     if (s->contact_first[k] >= ends || s->contact_second[k] >= ends) return FIBRAD_WHY_CONTACT;
+    const double place = or_else(s->contact_temperature, k, __builtin_nan(""));
+    if (is_given(place) && !is_temperature(place)) return FIBRAD_WHY_TEMPERATURE;
+    if (is_given(place) && !may_have_places(heat, s, s->contact_second[k])) return FIBRAD_WHY_CONTACT;
     return s->conductance[k] >= 0 && s->conductance[k] <= FIBRAD_CONDUCTANCE_MAX ? FIBRAD_WHY_UNSAID
                                                                                  : FIBRAD_WHY_CONDUCTANCE;
 }
@@ -220,6 +230,17 @@ static bool has_one_temperature(const fibrad_heat *heat, const fibrad_heat_sourc
     return one;
 }
 
+/* Whether all contacts of a wall have temperatures of their own, and it has no film. */
+static bool has_places(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
+    const fibrad_contacts *c = heat->checked;
+    bool all = may_have_places(heat, s, heat->spheres + b) && film_of(heat, s, heat->spheres + b).conductance == 0;
+    for (uint32_t k = 0; k < c->count && all; k++)
+        if (c->first[k] == heat->spheres + b || c->second[k] == heat->spheres + b)
+            all = c->conductance[k] == 0 || (c->second[k] == heat->spheres + b && s->contact_temperature != NULL &&
+                                             is_given(s->contact_temperature[k]));
+    return all;
+}
+
 /* The reason why a wall is not valid. */
 static int wall_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const radiator source = of_body(s, b);
@@ -227,7 +248,7 @@ static int wall_why(const fibrad_heat *heat, const fibrad_heat_sources *s, uint3
     const int why = source_why(&source, touched);
     if (why != FIBRAD_WHY_UNSAID) return why;
     if (!sides_valid(heat, s, b)) return FIBRAD_WHY_SIDE;
-    if (touched && !has_one_temperature(heat, s, b)) return FIBRAD_WHY_TOUCHED;
+    if (touched && !has_one_temperature(heat, s, b) && !has_places(heat, s, b)) return FIBRAD_WHY_TOUCHED;
     return is_endless_unknown(heat, s, b) ? FIBRAD_WHY_ENDLESS : FIBRAD_WHY_UNSAID;
 }
 
@@ -572,7 +593,6 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     for (uint32_t task = 0; task < fibrad_heat_tasks(heat); task++)
         if (!heat->traced[task]) return FIBRAD_E_STATE;
     const double middle = middle_emission(heat, sources);
-    bool unknown = false;
     begin_contacts(heat, sources);
     /* Thermal radiation does not begin with the radiosities of light, nor light with those of thermal radiation. */
     if ((sources->light != NULL) != (heat->sources.light != NULL)) heat->solution.warm = false;
@@ -583,7 +603,7 @@ int fibrad_heat_begin(fibrad_heat *heat, const fibrad_heat_sources *sources) {
     heat->sources.asked = *sources;
     heat->sources.sides = heat->sources.passed = false;
     set_walls(heat, sources, middle);
-    unknown = heat->sources.sides;
+    bool unknown = heat->sources.sides;
     for (uint32_t b = 0; b < heat->bodies; b++) unknown = unknown || heat->sources.storage[b] == 0;
     heat->sources.light = sources->light, heat->sources.absorbed = sources->absorbed;
     heat->sources.sigma = sources->sigma, heat->sources.surroundings = sources->surroundings;

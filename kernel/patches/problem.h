@@ -163,7 +163,7 @@ typedef struct fibrad_heat_given {
     bool sides;                         /* some mesh has such sides; the next three are of their search: */
     bool passed, held, below;           /* both levels were searched; some temperature or film is given; T < 0 */
     double changed;                     /* square of what has changed between two searches of the finer level */
-    fibrad_heat_sources asked;          /* the caller's, of which the arrays of sides are used */
+    fibrad_heat_sources asked;          /* the caller's: arrays of sides, temperatures of contacts */
     double of_others[FIBRAD_WALLS_MAX]; /* K, [meshes], of sides that have no temperature of their own */
     double beyond[FIBRAD_WALLS_MAX];    /* [meshes], what fluxes have besides those of patches, if no power is coarse */
     double *still, *answer; /* [patches of all meshes], emission without arriving radiation, and its slope */
@@ -204,7 +204,7 @@ typedef struct fibrad_heat_solution {
     double *unsettled;       /* [bodies], what `left` of both levels makes of the extrapolated power */
     double sent_drift, sent_left, sent_unsettled; /* the same for what all surfaces send out */
     fibrad_heat_span *span;                       /* [spheres] */
-    bool steps; /* this is a step in time: extremes are found when they are asked for */
+    bool steps; /* a step in time, or no errors are wanted: extremes are found when they are asked for */
 } fibrad_heat_solution;
 
 /* Contacts that act at their places on spheres that conduct. The arrays are the caller's. */

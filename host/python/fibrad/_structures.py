@@ -19,14 +19,14 @@ class HeatSources(Structure):
                 ("storage", POINTER(c_double)), ("reference", POINTER(c_double)),
                 ("wall_temperature", POINTER(c_double)), ("wall_emissivity", POINTER(c_double)),
                 ("wall_power", POINTER(c_double)), ("insulated", POINTER(c_ubyte)), ("surroundings", c_double),
-                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32),
+                ("sigma", c_double), ("tolerance", c_double), ("sweeps_max", c_uint32), ("no_errors", c_uint32),
                 ("side_temperature", POINTER(c_double)), ("side_film", POINTER(c_double)),
                 ("side_gas", POINTER(c_double)), ("side_power", POINTER(c_double)), ("light", POINTER(c_double)),
                 ("conductivity", POINTER(c_double)), ("absorbed", POINTER(c_double)),
                 ("contact_first", POINTER(c_uint32)), ("contact_second", POINTER(c_uint32)),
-                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("film", POINTER(c_double)),
-                ("gas", POINTER(c_double)), ("wall_film", POINTER(c_double)), ("wall_gas", POINTER(c_double)),
-                ("stream", POINTER(Stream)), ("contact_places", POINTER(c_double))]
+                ("conductance", POINTER(c_double)), ("contacts", c_uint32), ("contact_temperature", POINTER(c_double)),
+                ("film", POINTER(c_double)), ("gas", POINTER(c_double)), ("wall_film", POINTER(c_double)),
+                ("wall_gas", POINTER(c_double)), ("stream", POINTER(Stream)), ("contact_places", POINTER(c_double))]
 
 
 class Plane(Structure):
@@ -186,11 +186,12 @@ class Span(Structure):
                 ("melted", POINTER(c_double)), ("wall_capacity", POINTER(c_double)), ("wall_end", POINTER(c_double)),
                 ("wall_temperature", POINTER(c_double)), ("surroundings", POINTER(c_double)),
                 ("gas", POINTER(c_double)), ("wall_gas", POINTER(c_double)), ("side_temperature", POINTER(c_double)),
-                ("side_gas", POINTER(c_double)), ("inlet", POINTER(c_double)), ("step", c_double),
-                ("tolerance", c_double), ("power", POINTER(c_double)), ("wall_power", POINTER(c_double)),
-                ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)), ("surroundings_energy", c_double),
-                ("gas_power", c_double), ("gas_energy", c_double), ("held_energy", c_double),
-                ("convected_energy", POINTER(c_double)), ("side_energy", POINTER(c_double)),
+                ("side_gas", POINTER(c_double)), ("contact_temperature", POINTER(c_double)),
+                ("inlet", POINTER(c_double)), ("step", c_double), ("tolerance", c_double), ("power", POINTER(c_double)),
+                ("wall_power", POINTER(c_double)), ("surroundings_power", c_double), ("wall_energy", POINTER(c_double)),
+                ("surroundings_energy", c_double), ("gas_power", c_double), ("gas_energy", c_double),
+                ("held_energy", c_double), ("convected_energy", POINTER(c_double)),
+                ("contact_energy", POINTER(c_double)), ("side_energy", POINTER(c_double)),
                 ("side_end", POINTER(c_double)), ("stored", POINTER(c_double)), ("law", POINTER(Law)),
                 ("observe", Observe), ("context", c_void_p), ("error", c_double), ("steps", c_uint64),
                 ("refused", c_uint64), ("sweeps", c_uint64), ("corrections", c_uint64)]
