@@ -3,6 +3,8 @@
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 .SUFFIXES:
+# numbers of awk, order of sort, words of compilers
+export LC_ALL = C
 
 # ---- yours to set on the command line -------------------------------------------------------------------------------
 CC         = cc
@@ -469,7 +471,7 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/package/check_deb.sh
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) tests/partner/check_openfoam.sh
-	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)"
+	BUILD=$(BUILD) CC="$(CC)" tests/check_python.sh
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
 	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh tests/check_readme.sh $(TEST_PROGRAMS)
 	$(MAKE) test-couple

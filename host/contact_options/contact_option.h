@@ -64,7 +64,7 @@ struct contact_options {
     const char *flows; /* NULL: not wanted */
 };
 
-enum { CONTACT_NO_SIDE = UINT32_MAX };
+#define CONTACT_NO_SIDE UINT32_MAX
 
 /* Contacts of one bed. */
 struct contact_state {

@@ -126,7 +126,7 @@ static uint32_t other_of_patch(const fibrad_heat *heat, uint32_t patch, uint32_t
 /* Adds the difference between the even and the odd rays of a range to the samples. */
 static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_heat_errors *errors) {
     const uint32_t bodies = heat->bodies - heat->spheres;
-    double half[FIBRAD_HEAT_OTHERS] = {0}, share[FIBRAD_HEAT_OTHERS], outside = 0;
+    double half[FIBRAD_HEAT_OTHERS] = {0}, share[FIBRAD_HEAT_OTHERS] = {0}, outside = 0;
     uint32_t from = 0, to = 0;
     for (uint32_t b = 0; b < bodies; b++) share[b] = fibrad_heat_outside(heat, heat->spheres + b);
     for (uint32_t k = begin; k < end; k++) {
