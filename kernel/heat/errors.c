@@ -459,8 +459,8 @@ static double unsettled_emission(const fibrad_heat *heat, uint32_t b, double are
     return squared(RESIDUAL_ERROR * heat->solution.unsettled[b] / (eps > 0 ? eps * area : area));
 }
 
-/* Finds what emissions that are found have in common. If the sides of a mesh have temperatures of their own, they
- * exchange heat among themselves. */
+/* Finds what the errors of unknown emissions have in common. If the sides of a mesh have temperatures of their own,
+ * each patch counts by itself, since the sides exchange heat with each other. */
 static void find_common(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     double powers = 0, square = 0, distances[2] = {0, 0}, spheres = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {
