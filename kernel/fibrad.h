@@ -314,7 +314,7 @@ typedef enum fibrad_why {
     FIBRAD_WHY_CONDUCTIVITY = 22, /* A conductivity is not above 0. */
     FIBRAD_WHY_CONTACT = 23,      /* A contact has an end that is neither a sphere nor a wall. */
     FIBRAD_WHY_CONDUCTANCE = 24,  /* A conductance is negative or out of range. */
-    FIBRAD_WHY_TOUCHED = 25,      /* A wall with a contact or a film is insulated, or its sides have temperatures. */
+    FIBRAD_WHY_TOUCHED = 25,      /* A wall with a contact or a film is insulated, or has no single temperature. */
     FIBRAD_WHY_ALONE = 26,        /* A sphere in contact has emissivity 0, and nothing sets its temperature. */
     FIBRAD_WHY_FILM = 27,         /* A film is negative or out of range, or the temperature of its gas is. */
     FIBRAD_WHY_STREAM = 28,       /* A stream has no such slice, or its inlet or capacities are out of range. */

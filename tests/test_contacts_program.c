@@ -84,6 +84,9 @@ LOOP_TEST(places_of_a_wall, 4) {
     }
     const int t = _i == 3 ? 2 : 1;
     for (int i = 0; i < 8; ++i) ck_assert_double_eq_tol(column(q[0], i, t), column(q[1], i, t), 5e-3);
+    FAIL_WITH(2, "heat", in_folder("bed.csv"), "--length-unit", "m", "--emissivity", ".8", "--power", "0", "--wall",
+              formatted("mesh:%s:temperatures=%s:convection=5:gas=300", stl[0], in_folder("list.csv")));
+    expect_message("--wall: one has temperatures of its triangles, and no convection", "");
     ck_assert_msg(error[0] > error[1] / 3 && error[0] < 3 * error[1], "%g K, %g K", error[0], error[1]);
 }
 
