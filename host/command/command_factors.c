@@ -6,13 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "cli/targets.h"
 #include "command/commands.h"
 #include "frames/solid_option.h"
 #include "plot/plot_bed.h"
 #include "simple/bed.h"
-#include "write/write.h"
 
 /* Methods of view factors by name, in the order of the enum. */
 enum method { METHOD_BEAM, METHOD_CAST, METHOD_MC, METHODS };

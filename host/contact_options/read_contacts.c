@@ -3,10 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "cli/targets.h"
 #include "contact_options/contact_option.h"
-#include "text/read_lines.h"
 #include "text/unit.h"
 
 /* The index of a sphere by its name. n: there is none. */

@@ -2,7 +2,6 @@
 #include "frames/warnings.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/message.h"

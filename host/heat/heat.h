@@ -3,7 +3,6 @@
 #ifndef HEAT_H
 #define HEAT_H
 
-#include "frames/bed_options.h"
 #include "contact_options/contact_option.h"
 
 /* ---- what is given of each sphere and wall: its temperature or its power ----------------------------------------- */

@@ -1,10 +1,9 @@
 /* heat_bed.c - the heat problem of one bed, from options and columns, and what is written of it.
  * SPDX-License-Identifier: MIT */
-#include <gsl/gsl_math.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 
 /* Allocates the arrays of the result, those of spheres in one block. The last INSIDE are of spheres that conduct. */

@@ -2,10 +2,7 @@
 #include "heat/heat.h"
 
 #include <gsl/gsl_math.h>
-#include <math.h>
 #include <stdlib.h>
-
-#include "cli/message.h"
 
 #define POWER_MAX 1e30 /* [W] largest absolute value of an option; far below FIBRAD_POWER_MAX */
 

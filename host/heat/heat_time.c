@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/time_run.h"
 #include "text/read_number.h"
 

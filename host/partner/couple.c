@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/time_run.h"
 #include "partner/partner.h"
 

@@ -6,9 +6,6 @@
 #ifndef PARTNER_H
 #define PARTNER_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "heat/heat.h"
 
 /* What is exchanged at faces. A face is a triangle of a wall that the partner has. Faces are in the order of walls, and

@@ -2,7 +2,6 @@
 #include "plot/plot_heat.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "bed/units.h"

@@ -3,7 +3,6 @@
 #include "simple/contact_list.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 int fibrad_contact_add(struct contact_block *block, const struct contact_found *contact) {

@@ -22,7 +22,6 @@
 #include <string.h>
 
 #include "simple/bed.h"
-#include "simple/bodies.h"
 #include "simple/nearest.h"
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */

@@ -6,10 +6,8 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/message.h"
-#include "cli/progress.h"
 
 enum { FURNACE_BATCH = 4096, FURNACE_SWEEPS_MAX = 100000 };
 
