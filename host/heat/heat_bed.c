@@ -98,7 +98,7 @@ int heat_find_places(struct heat *h, const bool *more) {
     const struct given *given = &h->values;
     bool own[WALLS_MAX] = {false}, any = false;
     for (uint32_t k = 0; k < h->walls.count; ++k)
-        own[k] = given->tables.column[k].n > 0 || (more && more[k]), any = any || own[k];
+        own[k] = given->column[k].n > 0 || (more && more[k]), any = any || own[k];
     if (h->touching.n == 0 || !any) return STATUS_OK;
     const int status = contacts_find_places(&h->touching, h->bed, &h->walls, own);
     if (!status) contacts_place(&h->touching, h->bed->n, given->side_temperature, given->wall_temperature);
