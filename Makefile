@@ -3,6 +3,8 @@
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 .SUFFIXES:
+# numbers of awk, order of sort, words of compilers
+export LC_ALL = C
 
 # ---- yours to set on the command line -------------------------------------------------------------------------------
 CC         = cc
@@ -201,6 +203,9 @@ $(STAND_IN): tests/partner/precice.c
 	$(CC) $(CFLAGS) -fPIC -shared $(LDFLAGS) $< -lm -o $@
 $(BUILD)/tests/test_couple: | $(STAND_IN)
 
+# these follow many rays of their own
+$(patsubst %,$(BUILD)/tests/test_%,clump_heat light_cones light_heat light_mesh light_spots solid trace walls): TEST_LEVEL = -O2
+
 # this test counts calls of the kernel
 $(BUILD)/tests/test_scenes: WRAPPED = -Wl,--wrap=fibrad_scene_init
 
@@ -311,7 +316,7 @@ FORMATTED = $(wildcard kernel/*.h kernel/*/*.[ch] kernel/*/*/*.h host/*.c host/*
 
 ## format: every source has the format of .clang-format (to repair: clang-format -i FILE)
 format:
-	clang-format --dry-run --Werror $(FORMATTED)
+	printf '%s\n' $(FORMATTED) | xargs -P 2 -n 60 clang-format --dry-run --Werror
 
 BENCH_ENV = BENCH_COMMIT="$$(git describe --always --dirty 2>/dev/null)" BENCH_FLAGS="$(CFLAGS) -ffp-contract=off"
 
@@ -400,10 +405,8 @@ FUZZ_FLAGS   = -timeout=60 -rss_limit_mb=4096 -malloc_limit_mb=64 -close_fd_mask
 fuzz-programs: need-libraries
 	+@$(SANITIZED) $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%)
 	@mkdir -p $(FUZZ)
-	@set -e; for target in $(FUZZ_TARGETS); do \
-	    clang -O1 -g -fsanitize=fuzzer,$(SANITIZE) -fno-sanitize-recover=undefined $(HOST_FLAGS) tests/fuzz/fuzz_$$target.c \
-	        $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_$$target; \
-	done
+	@printf '%s\n' $(FUZZ_TARGETS) | xargs -P 2 -I{} clang -O1 -g -fsanitize=fuzzer,$(SANITIZE) -fno-sanitize-recover=undefined \
+	    $(HOST_FLAGS) tests/fuzz/fuzz_{}.c $(LIBRARIES:$(BUILD)/%=$(BUILD)/sanitized/%) $(GSL_LIBS) $(ZLIB_LIBS) -lm -o $(FUZZ)/fuzz_{}
 
 ## fuzz: hostile input for the readers, the kernel and the simple layer, FUZZ_SECONDS=60 in all
 fuzz: fuzz-programs
@@ -413,8 +416,8 @@ fuzz: fuzz-programs
 	        -artifact_prefix=$(FUZZ)/$$target- $(FUZZ)/found_$$target tests/fuzz/corpus_$$target; \
 	done
 
-## fuzz-fixed: fuzz with a fixed number of inputs, the same ones every time (half a minute)
-FUZZ_RUNS = kernel:400 host:100 read:5000
+## fuzz-fixed: fuzz with a fixed number of inputs, the same ones every time (quarter of a minute)
+FUZZ_RUNS = kernel:250 host:60 read:3000
 # what comparisons show would bring addresses in, which differ from run to run: -use_cmp=0
 fuzz-fixed: fuzz-programs
 	@echo $(FUZZ_RUNS) | tr ' ' '\n' | OMP_WAIT_POLICY=passive xargs -P 2 -I{} sh -ec 'run={}; target=$${run%:*}; \
@@ -468,9 +471,9 @@ nightly: deps-nightly bits threads lint clang-warnings bench-quick skips stress 
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" tests/package/check_deb.sh
 	BUILD=$(BUILD) tests/check_tables.sh all
 	BUILD=$(BUILD) tests/partner/check_openfoam.sh
-	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)"
+	BUILD=$(BUILD) CC="$(CC)" tests/check_python.sh
 	BUILD=$(BUILD) MAKE="$(MAKE)" CC="$(CC)" HOSTCC="$(HOSTCC)" tests/freestanding/check_freestanding.sh
-	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh $(TEST_PROGRAMS)
+	BUILD=$(BUILD) NIGHTLY=1 tests/run.sh tests/check_readme.sh $(TEST_PROGRAMS)
 	$(MAKE) test-couple
 	$(MAKE) mutate
 	$(MAKE) sanitized $(ALL_ISAS) OF_MEMORY="$(filter-out accuracy furnace reference reproduce,$(TESTS:tests/test_%.c=%))"

@@ -148,9 +148,9 @@ typedef struct fibrad_stream {
  * 0 that is in contact has a temperature, and may give off a power. `conductance` is in units of sigma K^3 L^2. If
  * lengths are in millimetres and sigma is in W/(m2 K4), 1 W/K is 1e6.
  *
- * contact_temperature is for walls whose temperature differs from place to place. The second end of a contact is then a
- * wall of given temperature that is not insulated, and contact_temperature is the temperature at the contact. If sides
- * of the wall have temperatures or films, each of its contacts needs one, and the wall has no film of its own.
+ * contact_temperature is for walls whose temperature differs from place to place: it is the temperature of the wall at
+ * the contact. Such a wall is the second end of the contact. It has a given temperature and is not insulated. If its
+ * sides have temperatures, films or powers, each of its contacts needs a contact_temperature, and wall_film must be 0.
  *
  * A film exchanges heat with gas: film times the difference of the temperatures of gas and surface. It is the heat
  * transfer coefficient times the area, in the unit of `conductance`. A film acts as a contact does: also on spheres of
@@ -272,8 +272,8 @@ int fibrad_heat_step(fibrad_heat *heat, int *solved);
  * least_temperature, largest_temperature and centre_temperature differ only on spheres with a finite conductivity. For
  * any other sphere all three are its temperature. wall_temperature of an insulated wall is the fourth root of its mean
  * T^4. The same holds for a mesh whose sides have temperatures of their own. The root mean square error of the powers
- * of all spheres is the root of error_patches^2 + error_beams^2. With sources.no_errors no estimated error is written:
- * none of the arrays and numbers whose names contain "error". */
+ * of all spheres is the root of error_patches^2 + error_beams^2. With sources.no_errors the arrays and numbers whose
+ * names contain "error" are not written. */
 typedef struct fibrad_heat_result {
     double *power;                  /* sigma K^4 L^2, [spheres], out: net power */
     double *wall_power;             /* sigma K^4 L^2, [walls], out: net power; NULL without walls */

@@ -33,6 +33,7 @@ fi
 
 # Each test has one thread, unless it asks for more: the others have the other processors. Threads that wait must leave
 # them to the other tests: spinning took up to two thirds of the time of tests with OpenMP.
+at_a_time=$(nproc) # before OMP_NUM_THREADS is set: nproc obeys it
 export OMP_NUM_THREADS="${OMP_NUM_THREADS:-1}" OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
 
 # A loaded machine is no failure, so no test program has its own limit of time.
@@ -40,7 +41,7 @@ export CK_DEFAULT_TIMEOUT="${CK_DEFAULT_TIMEOUT:-300}"
 tests=$#
 rm -rf "$logs"
 mkdir -p "$logs"
-printf '%s\n' "$@" | xargs -r -n 1 -P "$(nproc)" "$0" --one
+printf '%s\n' "$@" | xargs -r -n 1 -P "$at_a_time" "$0" --one
 
 set -- 0 0 0 0
 for counts in "$logs"/*.counts; do

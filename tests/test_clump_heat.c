@@ -191,7 +191,7 @@ static void assert_by_rays(struct lumps *l, uint32_t clump) {
     for (int k = 0; k < 6; k++) l->wall_t[k] = k == 4 ? 1300 : 900, l->wall_e[k] = .6;
     solve(l, &s);
     for (uint32_t i = 0; i < l->n; i++) {
-        const double own = power_by_paths(l, i, 2000000);
+        const double own = power_by_paths(l, i, 1000000);
         if (l->clump[i] == clump) exact += own;
     }
     const double power = of_clump(l, clump, s.power, false), error = of_clump(l, clump, s.error, true);

@@ -31,7 +31,8 @@ static const char *write_bed(void) {
 
 /* Contacts of some spheres with the box, which is the second end of one. */
 static const char *write_contacts(void) {
-    return write_file("contacts.csv", "i,j,W/K\noven,0,0.05\n2,oven,0.02\noven,13,0.1\noven,26,0.01\n0,1,0.3\n12,13,1\n");
+    return write_file("contacts.csv",
+                      "i,j,W/K\noven,0,0.05\n2,oven,0.02\noven,13,0.1\noven,26,0.01\n0,1,0.3\n12,13,1\n");
 }
 
 /* A configuration of preCICE. of_bed: what the participant Bed has. */

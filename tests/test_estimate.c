@@ -155,13 +155,13 @@ static const struct scene_in_walls {
     uint32_t spheres;
     double low, high, fraction, room;
     bool round;
-} scenes_in_walls[] = {{"dense box", 200, .8, 1.2, .5, 1, false},
-                       {"dense cylinder", 200, .8, 1.2, .5, 1.5, true},
-                       {"dilute box", 100, .8, 1.2, .05, 1, false},
-                       {"dilute cylinder", 100, .8, 1.2, .05, 1.5, true},
-                       {"large and small in a box", 200, .25, 1, .45, 1, false},
-                       {"large and small in a cylinder", 150, .2, 1, .4, 1.5, true},
-                       {"a heap in a wide box", 100, .8, 1.2, .5, 6, false},
+} scenes_in_walls[] = {{"dense box", 100, .8, 1.2, .5, 1, false},
+                       {"dense cylinder", 100, .8, 1.2, .5, 1.5, true},
+                       {"dilute box", 60, .8, 1.2, .05, 1, false},
+                       {"dilute cylinder", 60, .8, 1.2, .05, 1.5, true},
+                       {"large and small in a box", 100, .25, 1, .45, 1, false},
+                       {"large and small in a cylinder", 100, .2, 1, .4, 1.5, true},
+                       {"a heap in a wide box", 60, .8, 1.2, .5, 6, false},
                        {"a heap in a wide cylinder", 60, .8, 1.2, .5, 8, true},
                        {"few in a box", 6, .5, 1, .2, 1.2, false},
                        {"few in a cylinder", 5, .5, 1, .2, 2, true},

@@ -200,7 +200,7 @@ TEST(a_room) {
     assert_ok(fibrad_bed_solve(made, &s, NULL, &result));
     OWNED_FACTORS *d = NULL;
     const fibrad_exchange_rule paths = {
-        .emissivity = emissivity, .wall_emissivity = wall_emissivity, .paths = 65536, .directions = 8192};
+        .emissivity = emissivity, .wall_emissivity = wall_emissivity, .paths = 32768, .directions = 4096};
     assert_ok(exchange_of(&scene, &spheres, &paths, NULL, NULL, &d));
     for (int step = 0; step < 30; ++step) {
         double matrix[N * N] = {0}, right[N];

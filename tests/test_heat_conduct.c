@@ -124,7 +124,7 @@ LOOP_TEST(one_side_lit, 4) {
     double h[DEGREES + 1], squares = 0, errors = 0;
     p.emissivity[0] = e, p.temperature[0] = NAN;
     p.sources.power = (const double[]){0, NAN}, p.sources.tolerance = 1e-7;
-    p.config.directions = 20000, p.config.points = 256;
+    p.config.directions = 10000, p.config.points = 256;
     conduct(&p, k, 1);
     conductivity[1] = INFINITY;
     trace_and_solve(&p);

@@ -639,7 +639,7 @@ TEST(faces_with_temperatures_of_their_own) {
     static double side[2 * 12 * 144], flux[2 * 12 * 144], found[2 * 12 * 144];
     for (uint32_t cells = 1; cells <= 12; cells += 11) {
         ENDED struct problem *walls = thirty(), *one = thirty();
-        walls->config = one->config = (fibrad_heat_config){.directions = 700, .patches = 384, .wall_rays = 300000};
+        walls->config = one->config = (fibrad_heat_config){.directions = 400, .patches = 96, .wall_rays = 200000};
         make_box(walls, 0, 1, cells);
         one->walls = 1, one->wall_temperature[0] = 1.7, one->wall_emissivity[0] = .6;
         add_box(one->mesh, 0, 1, cells, true);

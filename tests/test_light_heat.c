@@ -126,7 +126,7 @@ TEST(a_settled_bed_absorbs_as_plain_rays_say) {
     OWNED_MADE *radiation = traced(&bed, &config);
     double top = -INFINITY;
     for (uint32_t i = 0; i < bed.n; i++) top = fmax(top, bed.z[i] + bed.r[i]);
-    for (int k = 0; k < 4; k++) {
+    for (int k = 1; k < 3; k++) {
         const double absorptivity = k % 2 ? .8 : .4, slant = k < 2 ? 0 : PI / 6, d[3] = {sin(slant), 0, -cos(slant)};
         const fibrad_light light = {.direction = {d[0], d[1], d[2]}, .flux = 1 / (144 * cos(slant))};
         OWNED_ABSORBED a = absorb_light(radiation, &bed, &config, &light, absorptivity, 0);
@@ -224,7 +224,7 @@ TEST(a_cup_of_triangles_absorbs_as_one_of_planes) {
             const double *v = light.direction, size = sqrt(plain_product(v, v)),
                          d[3] = {v[0] / size, v[1] / size, v[2] / size};
             double rays[2];
-            absorb_in_cup(&plain, d, wide, 400, rays);
+            absorb_in_cup(&plain, d, wide, 250, rays);
             printf("by rays %.5f %.5f, ours %.5f %.5f\n", rays[0], rays[1], sum[1], b.wall[0]);
             assert_near(sum[1], rays[0], .004);
             ck_assert_double_eq_tol(b.wall[0], rays[1], .004 * rays[0]);

@@ -84,7 +84,7 @@ LOOP_TEST(calls_out_of_order_change_nothing, 3) {
 TEST(begun_anew_in_between) {
     const struct contents c = contents_of(10);
     ENDED struct problem *book = by_the_book(&c);
-    for (uint32_t until = 0; until < book->result.sweeps; until += 5) {
+    for (uint32_t until = 0; until < book->result.sweeps; until += 9) {
         ENDED struct problem *p = begin_problem(&c, 0);
         trace_all(p);
         p->sources.surroundings = 3;

@@ -78,8 +78,8 @@ static void draw_point(uint64_t *count, double point[3]) {
  * cosine. */
 TEST(patterns_of_a_ball) {
     enum { DRAWS = 200000, DEGREES = 8 };
-    static const double a[] = {.001, .1, 1, 5, 100};
-    for (size_t k = 0; k < sizeof a / sizeof *a; ++k) {
+    static const double a[] = {.001, 1, 100, .1, 5};
+    for (uint64_t k = 0; k < by_night(5, 3); ++k) {
         double mean[DEGREES + 1] = {0}, turned[3] = {0};
         uint64_t count = 0;
         for (int n = 0; n < DRAWS; ++n) {
@@ -138,7 +138,7 @@ static double mean_factor(const struct conduction *of, double *square) {
 
 /* Spheres touch in a simple cubic lattice. The true values come from harmonics up to degrees 9 and 13 and 1.2e7 rays,
  * and are right to .0005. */
-LOOP_TEST(simple_cubic, 14) {
+LOOP_TEST(simple_cubic, by_night(14, 8)) {
     static const struct {
         double k_star, factor[2]; /* at emissivities 1 and .6 */
     } known[] = {{.01, {.2376, .2373}}, {.1, {.3591, .3430}},  {.3, {.5294, .4614}},       {1, {.8006, .5979}},
@@ -157,7 +157,7 @@ LOOP_TEST(simple_cubic, 14) {
 
 /* Solves the problem plainly by harmonics: degrees up to DEGREE of the radiosity J of each sphere. Overlaps come from
  * rays. sigma T^4 rises by `period` along z from one image of the bed to the next. */
-enum { SPHERES = 8u, DEGREE = 5, TERMS = (DEGREE + 1) * (DEGREE + 1), UNKNOWN = SPHERES * TERMS, RAYS = 20000 };
+enum { SPHERES = 8u, DEGREE = 5, TERMS = (DEGREE + 1) * (DEGREE + 1), UNKNOWN = SPHERES * TERMS, RAYS = 8000 };
 
 /* Real harmonics at a point of the unit sphere, each with the mean square 1. */
 static void harmonics(const double n[3], double y[TERMS]) {
@@ -362,8 +362,8 @@ static const char *write_tower(double period[3]) {
 }
 
 /* Paths in a periodic bed are compared with patches of the same bed between plates. */
-LOOP_TEST(paths_and_patches_of_a_random_bed, 3) {
-    static const double k_star[] = {1, .1, .01}, most[] = {.01, .01, .02};
+LOOP_TEST(paths_and_patches_of_a_random_bed, by_night(3, 2)) {
+    static const double k_star[] = {1, .01, .1}, most[] = {.01, .02, .01};
     double period[3];
     const char *file = write_tower(period), *solid = formatted("%.17g", k_star[_i] * 8e-3 * 5.670374419e-8 * 1e9);
     const char *periods = formatted("%.17g,%.17g,%.17g", period[0], period[1], 8 * period[2]);

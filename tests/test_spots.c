@@ -58,7 +58,7 @@ static const struct lattice {
     {.2, 10, .05, .4611, .4679}, {.6, 3, .05, .1039, .1227}, {1, 1, .02, .0036, .0085},  {.6, 1, .1, .0405, .0641},
     {.6, 10, .1, .8393, .8839},  {1, 10, .02, .1579, .1758}, {1, 10, .1, .7616, .8475},  {.2, .1, .05, .00065, .00185},
 };
-LOOP_TEST(a_lattice_with_contacts, 12) {
+LOOP_TEST(a_lattice_with_contacts, by_night(12, 8)) {
     const struct lattice *at = &lattice_with[_i];
     const carried without = carried_by(at->k_star, at->e, 0), with = carried_by(at->k_star, at->e, at->size);
     ck_assert_double_le(fabs(with.all - without.all - at->more), .01 * with.all);

@@ -70,7 +70,7 @@ TEST(schumann_column) {
         SUCCEED("heat", columns(1, N), "--length-unit", "m", "--ambient", "300", "--emissivity", "0", "--temperature",
                 "300", "--convection", "10", "--gas-flow", formatted("z:%.17g", flow / 4e-4 / 1000),
                 "--gas-heat-capacity", "1000", "--gas-temperature", "500", "--heat-capacity", "800", "--density",
-                "2500", "--until", formatted("%.17g", time / rate), "-o", q);
+                "2500", "--until", formatted("%.17g", time / rate), "-o", q, "--directions", "24", "--patches", "24");
         values_of(q, 2, N, t);
         for (int i = 0; i < N; i += 111)
             ck_assert_double_eq_tol((t[i] - 300) / 200, schumann(.01 * (i + .5), time), .002);

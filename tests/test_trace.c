@@ -107,7 +107,7 @@ TEST(rays_in_random_beds_meet_the_nearest) {
     for (int kind = 0; kind < 4; kind++) {
         OWNED_BED bed = packing(150, kind == 3 ? .1 : kind == 0 ? 1 : .5, 1, kind == 2 ? .02 : .5, 3, kind != 1);
         for (int k = 0; k < isas.count; k++)
-            follow(&bed, isas.set[k], kind == 0 ? FEW : EACH, kind == 2 ? 4 : 2, 300, 4);
+            follow(&bed, isas.set[k], kind == 0 ? FEW : EACH, kind == 2 ? 4 : 2, 150, 4);
     }
 }
 

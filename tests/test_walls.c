@@ -464,7 +464,7 @@ TEST(a_ray_leaves_through_the_first_wall) {
     for (size_t k = 0; k < sizeof walls / sizeof *walls; k++) {
         bed.period[2] = k == 5 ? 20 : 0;
         OWNED fibrad_scene *scene = scene_in(&bed, &walls[k], 0);
-        for (int ray = 0; ray < 20000; ray++) {
+        for (int ray = 0; ray < 10000; ray++) {
             double o[3], w[3], distance, normal[3], on[3];
             for (int axis = 0; axis < 3; axis++) o[axis] = uniform(1.5, 8.5), w[axis] = uniform(-1, 1);
             if (ray % 4 == 1) w[ray / 4 % 3] = 0;

@@ -115,7 +115,7 @@ static void assert_shortest(double value) {
 TEST(numbers_are_those_of_printf) {
     uint64_t state = 88172645463325252u;
     char ours[2 * TEXT_NUMBER], theirs[2 * TEXT_NUMBER];
-    for (int k = 0; k < 500000; ++k) {
+    for (uint64_t k = 0; k < by_night(500000, 100000); ++k) {
         state ^= state << 13, state ^= state >> 7, state ^= state << 17;
         double value;
         uint64_t bits = state;

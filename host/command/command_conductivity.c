@@ -122,7 +122,7 @@ static int take_temperatures(struct conductivity_request *request) {
     t[0] = NAN;
     if (!request->at) return STATUS_OK;
     if (strchr(request->at, ':')) {
-        strncat(from, request->at, sizeof from - 1);
+        snprintf(from, sizeof from, "%s", request->at);
         for (char *colon; (colon = strchr(from, ':'));) *colon = ',';
         status = options_numbers("--temperature", from, 3, range, &count);
         const double steps = floor((range[1] - range[0]) / range[2] * (1 + 1e-12));

@@ -13,12 +13,12 @@ struct couple {
 };
 
 static const struct option own_options[] = {
-    {0, "precice", "FILE", "couple by preCICE, whose configuration is FILE (.xml)",
+    {0, "precice", "FILE", "couple with preCICE, whose configuration is FILE (.xml)",
      TO_TEXT(struct couple, exchange.file)},
     {0, "participant", "NAME", "the name of this bed in the configuration of preCICE",
      TO_TEXT(struct couple, exchange.participant)},
     {0, "openfoam", "DIR",
-     "couple with OpenFOAM, whose case is the folder DIR; without a case, DIR is the folder commsDir itself",
+     "couple with OpenFOAM, whose case is the folder DIR; DIR may also be the folder commsDir itself",
      TO_TEXT(struct couple, exchange.folder)},
     {0, "window", "S", "with --openfoam: length of a time window, the seconds from one exchange to the next",
      TO_NUMBER(struct couple, exchange.window, 1 / SECONDS_MAX, SECONDS_MAX)},
@@ -49,18 +49,18 @@ static const struct option *couple_options(void) {
 static int couple_help(void) {
     static const char *more[40] = {
         "preCICE: The configuration says which meshes and data the participant has. The ends of their names, behind\n"
-        "- or _, say what they are. A mesh that ends in the name of a wall of triangles has its faces. One that ends\n"
-        "in Particles has the spheres. Vertices are the centres of triangles or spheres, in metres. Data end in:\n"
+        "- or _, say what they are. Names of meshes end in the name of a wall of triangles, for its faces, or in\n"
+        "Particles, for the spheres. Vertices are the centres of triangles or spheres, in metres. Data end in:\n"
         "  faces read        Temperature [K], or Heat-Transfer-Coefficient [W/(m2 K)] and Sink-Temperature [K]\n"
         "  faces write       Power [W], conservative; Heat-Flux [W/m2]; Temperature [K]\n"
         "  particles read    Temperature [K] of the gas; Heat-Transfer-Coefficient [else --convection]\n"
         "  particles write   Power [W] to the gas, conservative; Temperature [K]\n"
         "                    Source [W] and Conductance [W/K], conservative: a gas at T gains Source - Conductance T\n",
         "OpenFOAM: The function object externalCoupled and the boundary condition externalCoupledTemperature write\n"
-        "and read the files. Each triangle of --faces lies on a face of the patch.\n"
-        "The other solver says when the run ends. Powers are means over a time window, so both sides count the same\n"
-        "energy. The summary and --json have the energies of each time window. A wall whose faces are exchanged\n"
-        "begins at its :temperature=T.\n"};
+        "and read the files. Each triangle of --faces lies on a face of the patch.\n\n"
+        "The other solver says when the run ends. Powers are means over a time window, so both solvers count the\n"
+        "same energy. The summary and --json have the energies of each time window. A wall whose faces are\n"
+        "exchanged begins at its :temperature=T.\n"};
     size_t n = 2;
     for (; n < 39 && heat_more[n - 2]; ++n) more[n] = heat_more[n - 2];
     options_help(

@@ -15,8 +15,8 @@ enum { CONTACT_FILES_MAX = 8 };
 /* Rows of a table of options, without the outermost braces. */
 #define OPTIONS_CONTACTS(request)                                                                                      \
     {0, "contacts", "CONTACTS",                                                                                        \
-     "heat through contacts: lens, hertz, or a file of conductances; spots are from overlaps, the file has i,j,W/K; "  \
-     "may be given several times [none]",                                                                              \
+     "heat through contacts: lens, hertz, or a file of conductances; lens and hertz find spots from overlaps, a file " \
+     "has i,j,W/K; may be given several times [none]",                                                                 \
      TO_FUNCTION(contacts_option, request, contacts)},                                                                 \
         {0, "contact-conductivity", "K",                                                                               \
          "conductivity of the solid at contacts [W/(m K)]; as --solid-conductivity, but a sphere has one "             \
@@ -43,13 +43,12 @@ enum { CONTACT_FILES_MAX = 8 };
 
 /* A paragraph of --help. */
 #define CONTACTS_MORE                                                                                                  \
-    "--contacts FILE: a header i,j,W/K (or mW/K, kW/K) and a line for each contact. i and j are names of spheres or "  \
-    "of walls.\n"                                                                                                      \
-    "A * in FILE stands for the number of the frame. Several lines of a pair add up. With lens or hertz,\n"            \
-    "spheres and walls that overlap touch at a spot of radius a: the circle in which they cut each other, or\n"        \
-    "Hertz's spot, which is 1.41 times smaller. It conducts 2 k a, or 4 k a to a wall. On a wall with\n"               \
-    "temperatures=FILE a contact has the temperature of the triangle that it touches. Outputs then have\n"             \
-    "q_radiation_W and q_conduction_W, which add up to q_W.\n"
+    "--contacts FILE: A header i,j,W/K (or mW/K, kW/K) and a line for each contact. i and j are names of\n"            \
+    "spheres or of walls. A * in FILE stands for the number of the frame. Several lines of a pair add up.\n"           \
+    "With lens or hertz, spheres and walls that overlap touch at a spot of radius a: the circle in which they\n"       \
+    "cut each other, or Hertz's spot, which is 1.41 times smaller. The spot conducts 2 k a, or 4 k a to a\n"           \
+    "wall. A contact with a wall of temperatures=FILE acts at the temperature of the triangle that is touched.\n"      \
+    "With contacts, outputs have q_radiation_W and q_conduction_W. These are parts of q_W.\n"
 
 /* Arguments of the options. Begin with zeroes. */
 struct contact_options {
@@ -64,7 +63,7 @@ struct contact_options {
     const char *flows; /* NULL: not wanted */
 };
 
-enum { CONTACT_NO_SIDE = UINT32_MAX };
+#define CONTACT_NO_SIDE UINT32_MAX
 
 /* Contacts of one bed. */
 struct contact_state {
@@ -106,12 +105,13 @@ void contacts_free(struct contact_state *state);
 void contacts_follow(struct contact_state *state, const struct bed *bed, const double *temperature,
                      const double *wall_temperature);
 
-/* contact_places.c: finds the sides that spheres touch on the walls in `own`, which are meshes. Makes walls the second
- * ends of contacts, and sets state->temperature to NaN. Status 0 or STATUS_MEMORY. */
+/* contact_places.c: finds the sides that spheres touch on the walls that `own` marks, which are meshes. Makes walls the
+ * second ends of contacts, and sets state->temperature to NaN. Status 0 or STATUS_MEMORY. */
 int contacts_find_places(struct contact_state *state, const struct bed *bed, const struct walls *walls,
                          const bool own[WALLS_MAX]);
 
-/* Sets state->temperature to the temperatures of these sides, or to those of their walls. NULL: no side has one. */
+/* Sets state->temperature of contacts with these sides: to that of the side, or of its wall if the side has none.
+ * side_temperature NULL: no side has one. */
 void contacts_place(struct contact_state *state, uint32_t spheres, const double *side_temperature,
                     const double *wall_temperature);
 

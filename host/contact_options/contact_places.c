@@ -56,7 +56,7 @@ int contacts_find_places(struct contact_state *state, const struct bed *bed, con
     state->temperature = malloc((state->n + (size_t)1) * sizeof *state->temperature);
     if (!state->side || !state->temperature) return message_memory();
     for (uint32_t k = 0; k < state->n; ++k) {
-        if (state->first[k] >= bed->n) { /* walls are second ends */
+        if (state->first[k] >= bed->n) { /* walls become second ends */
             const uint32_t wall = state->first[k];
             state->first[k] = state->second[k], state->second[k] = wall;
         }

@@ -124,7 +124,7 @@ void film_free(struct film_state *state) {
     free(state->film);
     free(state->gas);
     free(state->convected);
-    free((uint32_t *)(uintptr_t)state->stream.slice);
+    free((void *)state->stream.slice);
     free(state->memory);
     *state = (struct film_state){.any = false};
 }

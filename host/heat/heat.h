@@ -342,8 +342,8 @@ struct heat {
 int heat_begin(struct heat *heat, struct bed *bed);
 void heat_end(struct heat *heat);
 
-/* Finds where spheres touch walls whose sides have temperatures of their own, or are in `more`; NULL: no more. Status 0
- * or STATUS_MEMORY. */
+/* Finds where spheres touch walls whose sides have temperatures of their own, and sets sources.contact_temperature.
+ * more: whether a wall counts without such sides, too; NULL: none does. Status 0 or STATUS_MEMORY. */
 int heat_find_places(struct heat *heat, const bool *more);
 
 /* Whether a wall is insulated. */

@@ -103,6 +103,12 @@ static void add_patches(fibrad_heat_config *config, const struct excess *over) {
     add_beams(config, fmax(4, over->beams / beams_beside(PATCHES_LEFT * over->patches)), GROWTH);
 }
 
+/* The number of rays between walls: with more beams at least as many as the kernel's default. */
+static double rays_of(const fibrad_heat_config *config) {
+    const double beams = (double)config->directions * config->points;
+    return fmax(fmax(config->wall_rays, FIBRAD_WALL_RAYS_DEFAULT), 6 * beams);
+}
+
 /* Rays between walls: the error falls as the square root of their number. */
 static void add_wall_rays(fibrad_heat_config *config, double over, double most) {
     const uint32_t rays = config->wall_rays > 0 ? config->wall_rays : FIBRAD_WALL_RAYS_DEFAULT;
@@ -133,6 +139,7 @@ static fibrad_heat_config refine(fibrad_heat_config config, const struct excess 
     } else if (over->flows > 1 && over->flows <= HELPED * last->flows) {
         add_beams(&config, fmin(over->flows, BEAMS_FOR_FLOWS), most);
     }
+    if (config.wall_rays > 0) config.wall_rays = (uint32_t)fmin(rays_of(&config), FIBRAD_WALL_RAYS_MAX);
     return config;
 }
 
@@ -140,9 +147,7 @@ static fibrad_heat_config refine(fibrad_heat_config config, const struct excess 
  * beams. */
 #define BEAMS_A_RAY 12.0
 static double work_of_rays(uint32_t walls, const fibrad_heat_config *config) {
-    const double beams = (double)config->directions * config->points;
-    const double rays = fmax(fmax(config->wall_rays, FIBRAD_WALL_RAYS_DEFAULT), 6 * beams);
-    return walls > 0 ? BEAMS_A_RAY * rays : 0;
+    return walls > 0 ? BEAMS_A_RAY * rays_of(config) : 0;
 }
 static double work_of(const struct heat *h, const fibrad_heat_config *config) {
     return h->bed->n * ((double)config->directions * config->points) + work_of_rays(h->walls.count, config);

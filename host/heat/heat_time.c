@@ -502,7 +502,7 @@ int time_begin(struct time_run *m) {
 
 void time_end(struct time_run *m) {
     free(m->span.temperature);
-    free((double *)(uintptr_t)m->span.capacity);
+    free((void *)m->span.capacity);
     free(m->specific);
     free(m->store);
     free(m->store_of);

@@ -29,9 +29,9 @@ enum { CONTACT_END, CONTACT_ENERGY, CONTACT_FLOW };
 
 /* A face, and the contacts that end on it. */
 struct touched {
-    double begun, behind; /* [K] its temperature, and what is behind its film, at the beginning of the time window */
+    double begun, behind; /* [K] of the face, and behind its film, at the beginning of the time window */
     double conductance;   /* [W/K] of its contacts */
-    double supply;        /* [W] what they would bring to it at 0 K */
+    double supply;        /* [W] what its contacts would bring to the face at 0 K */
 };
 
 enum { SIDE_BEGUN, SIDE_END, SIDE_FILM, BEHIND_BEGUN, BEHIND_END, SIDE_ENERGY };
@@ -174,8 +174,8 @@ static int make_contacts(struct coupling *c) {
     return STATUS_OK;
 }
 
-/* Contacts act at the temperatures of faces. If a face has a film, its temperature is that of the last try, and the
- * face takes the flow of that try. As part of the film this flow is less where the face has become hotter. */
+/* Contacts act at the temperatures of faces. For a face with a film this is the temperature of the last try. The face
+ * takes the flow of that try, or less if it has become hotter by now: contacts are part of its film. */
 static void set_contacts(struct coupling *c) {
     struct contact_state *t = &c->run.heat->touching;
     const struct exchange_faces *f = &c->exchange->faces;
@@ -196,7 +196,7 @@ static void set_contacts(struct coupling *c) {
     }
 }
 
-/* Adds what contacts bring to faces. */
+/* Adds what contacts bring to faces, and keeps their flows for the next try. */
 static void take_contacts(struct coupling *c) {
     const uint32_t n = c->run.heat->touching.n;
     for (uint32_t k = 0, face; k < n; ++k) {
@@ -207,7 +207,7 @@ static void take_contacts(struct coupling *c) {
     }
 }
 
-/* The temperature behind a film that takes the heat of contacts, too. `film` has both [W/(m2 K)]. */
+/* The temperature behind a film of which contacts are a part. film: with this part [W/(m2 K)]. */
 static double behind_both(const struct touched *touched, double behind, double film, double area) {
     return behind + (touched->supply - touched->conductance * behind) / (film * area);
 }

@@ -345,10 +345,10 @@ typedef struct fibrad_store {
  * each sphere that has melted. A sphere of infinite capacity is held: its temperature stays. held_energy is what held
  * spheres gain, their powers included.
  *
- * The side_energy of all sides of a wall adds up to its wall_energy. What the wall gains through contacts and its film
- * is spread over its sides by area. If sources->absorbed is set, the sum has the light that the wall absorbs, and
- * leaves out contacts and film. What passes through contacts that have a contact_temperature is always left out. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to
- * rounding.
+ * The side_energy of all sides of a wall adds up to its wall_energy, without what contacts that have a
+ * contact_temperature bring to it. What the wall gains through its other contacts and its film is spread over its sides
+ * by area. If sources->absorbed is set, the sum has the light that the wall absorbs, and leaves out all contacts and
+ * the film. If no wall has a film, convected_energy adds up to -gas_energy. Both sums are right to rounding.
  *
  * The temperature of a wall with a capacity is found. sources->wall_temperature has its temperature at the beginning.
  * The wall may have a power. It is neither endless nor insulated, and its sides have no temperatures of their own, no
@@ -367,7 +367,7 @@ typedef struct fibrad_span {
     const double *surroundings;     /* K, one number, at the end, linear in between; NULL: constant */
     const double *gas, *wall_gas; /* K, [spheres] and [walls], of films at the end, linear in between; NULL: constant */
     const double *side_temperature, *side_gas; /* K, [2 triangles], at the end, linear in between; NULL: constant */
-    const double *contact_temperature; /* K, [contacts], at the end, linear in between; NULL: constant */
+    const double *contact_temperature;         /* K, [contacts], at the end, linear in between; NULL: constant */
     const double *inlet;          /* K, one number, inlet of a stream at the end, linear in between; NULL: constant */
     double step;                  /* s; all steps are equal and at most this long; 0: automatic steps */
     double tolerance;             /* of automatic steps, relative error of a temperature, below 1; 0: 1e-4 */
@@ -400,9 +400,9 @@ typedef struct fibrad_span {
  *
  * Powers are those of patches. From the third step at the same positions on, exchange factors stand for patches.
  * Solutions by patches correct the powers from time to time. Patches serve alone if there is a law, if spheres conduct,
- * or if there are contacts, films or clumps. They do, too, if the temperature of a wall or of a side is to be found.
- * Those of walls with a capacity are. They also do if convected_energy, contact_energy, side_energy or side_end is
- * wanted.
+ * or if there are contacts, films or clumps. They do, too, if the temperature of a wall or of a side is to be found, as
+ * that of a wall with a capacity is. They also do if the span has side_temperature, or if convected_energy,
+ * contact_energy, side_energy or side_end is wanted.
  *
  * The members of a clump begin at one temperature, equally melted. They have the same store. All or none are held.
  *

@@ -43,8 +43,8 @@ static inline double nearest_on_triangle(double corner[3][3], double to[3], bool
     return fabs(height) * sqrt(square);
 }
 
-/* Whether a place of a wall lies beside a nearer one, both relative to the origin: in front of the plane through the
- * nearer place by no more than a tenth of the distance. */
+/* Whether a place of a wall lies beside a nearer place. Both are relative to the origin. Along the direction of the
+ * nearer place it is then at least nine tenths as far away as this place. */
 static inline bool lies_beside(const double place[3], const double nearer[3]) {
     return inner(place, nearer) > 0.9 * inner(nearer, nearer);
 }

@@ -118,22 +118,22 @@ static void look_before(const fibrad_heat *heat, const struct end *end, const st
     const double follows =
         other->known ? heat->sources.conductivity[end->body] / heat->sources.conductivity[other->body] : 0;
     double back[FIBRAD_RINGS], own[FIBRAD_RINGS], open[FIBRAD_RINGS], sum = 0, squares = 0;
+    uint32_t near = 0;
     if (away > TOUCHES * touching) return;
-    for (uint32_t k = 0; k < FIBRAD_RINGS && heat->rings->cosine[k] >= NEAR; k++) {
+    while (near < FIBRAD_RINGS && heat->rings->cosine[near] >= NEAR) near++;
+    for (uint32_t k = 0; k < near; k++) {
         const double cosine = heat->rings->cosine[k], taper = fibrad_min(1, 2 * (cosine - NEAR) / (1 - NEAR));
         const struct opposite opposite = wall ? opposite_wall(heat, other->body, distance / r, cosine)
                                               : opposite_sphere(heat, r, other, distance, cosine);
         back[k] = opposite.sees * opposite.seen * (1 - bright) * taper;
-        own[k] = opposite.sees * opposite.emitted;
-        light->follows[k] = opposite.sees * bright * follows * taper;
+        own[k] = opposite.sees * opposite.emitted, light->follows[k] = opposite.sees * bright * follows * taper;
         open[k] = 1 - opposite.sees * bright - back[k];
         sum += end->mean.area[k] * open[k] * (end->mean.arriving[k] - back[k] * end->mean.sent[k] - own[k]);
         squares += end->mean.area[k] * open[k] * open[k];
     }
-    for (uint32_t k = 0; k < FIBRAD_RINGS && squares > 0 && heat->rings->cosine[k] >= NEAR; k++) {
+    for (uint32_t k = 0; k < near && squares > 0; k++) {
         const double keeps = e / (1 - back[k] * (1 - e));
-        light->emits[k] = keeps * (1 - back[k]);
-        light->follows[k] *= keeps;
+        light->emits[k] = keeps * (1 - back[k]), light->follows[k] *= keeps;
         light->absorbs[k] = keeps * (own[k] + open[k] * (sum / squares) - (1 - back[k]) * mean);
     }
 }

@@ -126,7 +126,7 @@ static uint32_t other_of_patch(const fibrad_heat *heat, uint32_t patch, uint32_t
 /* Adds the difference between the even and the odd rays of a range to the samples. */
 static void sample_rays(const fibrad_heat *heat, uint32_t begin, uint32_t end, fibrad_heat_errors *errors) {
     const uint32_t bodies = heat->bodies - heat->spheres;
-    double half[FIBRAD_HEAT_OTHERS] = {0}, share[FIBRAD_HEAT_OTHERS], outside = 0;
+    double half[FIBRAD_HEAT_OTHERS] = {0}, share[FIBRAD_HEAT_OTHERS] = {0}, outside = 0;
     uint32_t from = 0, to = 0;
     for (uint32_t b = 0; b < bodies; b++) share[b] = fibrad_heat_outside(heat, heat->spheres + b);
     for (uint32_t k = begin; k < end; k++) {
@@ -459,8 +459,8 @@ static double unsettled_emission(const fibrad_heat *heat, uint32_t b, double are
     return squared(RESIDUAL_ERROR * heat->solution.unsettled[b] / (eps > 0 ? eps * area : area));
 }
 
-/* Finds what emissions that are found have in common. If the sides of a mesh have temperatures of their own, they
- * exchange heat among themselves. */
+/* Finds what the errors of unknown emissions have in common. If the sides of a mesh have temperatures of their own,
+ * each patch counts by itself, since the sides exchange heat with each other. */
 static void find_common(const fibrad_heat *heat, fibrad_heat_errors *errors) {
     double powers = 0, square = 0, distances[2] = {0, 0}, spheres = 0;
     for (uint32_t b = 0; b < heat->bodies; b++) {

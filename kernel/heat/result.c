@@ -8,7 +8,7 @@ static void put_wanted(double *values, uint32_t k, double value) {
     if (values != NULL) values[k] = value;
 }
 
-/* What a temperature differs by from the mean of its surface, and its error. */
+/* The difference of a temperature from the mean of its surface, and the error of this difference. */
 typedef struct measured {
     double value, error;
 } measured;
@@ -28,8 +28,8 @@ static measured extreme_of(const fibrad_heat *heat, uint32_t b, bool hottest) {
     return extreme;
 }
 
-/* The centre of a sphere is q r^2/(6 k) above the mean of its surface, for a source of q per volume that is uniform
- * inside. This is how much colder it is per power that the sphere gains. */
+/* With a source of q per volume that is uniform inside, the centre of a sphere is q r^2/(6 k) hotter than the mean of
+ * its surface. Returns by how much it is colder, over the power that the sphere gains. */
 static double slope_inside(const fibrad_heat *heat, uint32_t b) {
     return 1 / (8 * FIBRAD_PI * heat->scene->r[b] * heat->sources.conductivity[b]);
 }
@@ -41,7 +41,7 @@ static double temperature_of(const fibrad_heat *heat, uint32_t b) {
                : heat->sources.temperature[b];
 }
 
-/* Hands out temperatures. Inside, a sphere gives off its net power and the light that it absorbs. */
+/* Hands out temperatures. The source inside a sphere takes up its net power and the light that it absorbs. */
 static void read_temperatures(const fibrad_heat *heat, const fibrad_heat_result *result) {
     for (uint32_t b = 0; b < heat->spheres; b++) {
         const uint32_t i = heat->order[b];
@@ -139,8 +139,8 @@ static void read_net_powers(const fibrad_heat *heat, fibrad_heat_result *result)
     for (uint32_t b = 0; b < heat->bodies; b++) result->gas_power -= fibrad_heat_convected(heat, b);
 }
 
-/* The error of what the gas gains: at most what all temperatures at films err by. By the balance of all powers it is as
- * large as that of the other powers that are not given. outside: that of the surroundings. */
+/* The error of what the gas gains, the smaller of two: what all temperatures at films err by and, by the balance of all
+ * powers, what the other powers that are not given err by. outside: error of the power of the surroundings. */
 static double gas_error_of(const fibrad_heat *heat, const fibrad_heat_errors *errors, double outside) {
     double most = 0, others = outside * outside;
     if (!heat->contacts.joins) return 0;

@@ -74,7 +74,7 @@ static inline void fibrad_heat_follow_leaders(const fibrad_heat *heat, double *v
         if (fibrad_heat_follows(heat, b)) value[b] = value[heat->clumps.leader[b]];
 }
 
-/* The temperature of the second end of contact k: its own, or that of its node. */
+/* The temperature of the second end of contact k: its contact_temperature, or else that of its node. */
 static inline double fibrad_heat_at_contact(const fibrad_heat *heat, uint32_t k, double of_node) {
     const double *own = heat->sources.asked.contact_temperature;
     return own != NULL && own[k] == own[k] ? own[k] : of_node;
@@ -170,7 +170,7 @@ double fibrad_heat_find_spots(fibrad_heat *heat);
 /* Lets the flows that were found enter the spheres. */
 void fibrad_heat_place_flows(fibrad_heat *heat);
 
-/* Adds to `to` what bodies gain because places of walls have temperatures of their own. */
+/* Adds to `to` what bodies gain because contacts have other temperatures than their walls. */
 void fibrad_heat_add_places(const fibrad_heat *heat, double *to);
 
 /* Adds to `to` what bodies gain through contacts if the means of all surfaces are equal. */

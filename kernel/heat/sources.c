@@ -229,7 +229,7 @@ static bool has_one_temperature(const fibrad_heat *heat, const fibrad_heat_sourc
     return one;
 }
 
-/* Whether all contacts of a wall have temperatures of their own, and it has no film. */
+/* Whether all contacts of a wall have temperatures of their own, and the wall has no film. */
 static bool has_places(const fibrad_heat *heat, const fibrad_heat_sources *s, uint32_t b) {
     const fibrad_contacts *c = heat->checked;
     bool all = may_have_places(heat, s, heat->spheres + b) && film_of(heat, s, heat->spheres + b).conductance == 0;

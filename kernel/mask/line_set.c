@@ -34,10 +34,7 @@ size_t fibrad_line_set_size(uint32_t lines) {
 static void frame_of_line(uint32_t n, const double (*line)[3], uint32_t k, double frame[9]) {
     const double *w = line[k];
     double u[3] = {0, 0, 0}, square = 0;
-    for (uint32_t next = k + 1; square < 0.1; next++) {
-        fibrad_cross(w, line[next % n], u);
-        square = fibrad_dot(u, u);
-    }
+    for (uint32_t next = k + 1; square < 0.1; square = fibrad_dot(u, u)) fibrad_cross(w, line[next++ % n], u);
     const double scale = 1 / fibrad_sqrt(square);
     for (int axis = 0; axis < 3; axis++) frame[axis] = u[axis] * scale, frame[6 + axis] = w[axis];
     fibrad_cross(w, frame, frame + 3);
@@ -52,6 +49,7 @@ int fibrad_line_set_init(fibrad_line_set **made, void *memory, size_t size, uint
     const int status = fibrad_arena_open(&arena, memory, size, fibrad_line_set_size(n));
     if (status != FIBRAD_OK) return status;
     fibrad_line_set *set = line_set_layout(&arena, n, &fields);
+    if (fields.line == NULL || fields.frame == NULL) return FIBRAD_E_SIZE; /* never: for clang-tidy */
     fibrad_lines_read(n, fields.line);
     for (uint32_t k = 0; k < n; k++) {
         frame_of_line(n, (const double(*)[3])fields.line, k, fields.frame[k]);

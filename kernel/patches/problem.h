@@ -160,7 +160,7 @@ typedef struct fibrad_heat_given {
     bool sides;                         /* some mesh has such sides; the next three are of their search: */
     bool passed, held, below;           /* both levels were searched; some temperature or film is given; T < 0 */
     double changed;                     /* square of what has changed between two searches of the finer level */
-    fibrad_heat_sources asked;          /* the caller's: arrays of sides, temperatures of contacts */
+    fibrad_heat_sources asked;          /* the caller's, for arrays of sides, contact_temperature, no_errors */
     double of_others[FIBRAD_WALLS_MAX]; /* K, [meshes], of sides that have no temperature of their own */
     double beyond[FIBRAD_WALLS_MAX];    /* [meshes], what fluxes have besides those of patches, if no power is coarse */
     double *still, *answer; /* [patches of all meshes], emission without arriving radiation, and its slope */

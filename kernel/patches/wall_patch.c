@@ -8,9 +8,9 @@
  * sphere plus a fourth of the patches of all spheres.
  *
  * Beams of spheres tell what spheres and walls exchange. Rays of walls only tell what walls exchange with each other.
- * Behind a bed that is little. So a few rays of each patch suffice. There are at least FIBRAD_WALL_RAYS_DEFAULT or
- * `wall_rays` in all, and RAYS_PER_BEAM for each beam of one sphere. So more beams make the exchange of walls better,
- * too. */
+ * Behind a bed that is little. So a few rays of each patch suffice. There are at least `wall_rays` in all. The default
+ * is FIBRAD_WALL_RAYS_DEFAULT, or RAYS_PER_BEAM for each beam of one sphere. So more beams make the exchange of walls
+ * better, too. */
 #define FEW            16.0 /* times the patches of a sphere */
 #define OUTSIDE        4.0  /* patches of meshes, also outside the walls, may be this many times the limit */
 #define RAYS_PER_PATCH 8.0
@@ -110,8 +110,8 @@ void fibrad_heat_cut_walls(fibrad_heat *heat) {
     const double of_spheres = (double)heat->spheres * heat->config.patches,
                  most = FEW * heat->config.patches + of_spheres / 4;
     const double square = fibrad_sqrt(fibrad_max(surface / of_spheres, area / most));
-    const double least = fibrad_max(FIBRAD_WALL_RAYS_DEFAULT, heat->config.wall_rays);
-    const double rays = fibrad_max(least, RAYS_PER_BEAM * heat->beams);
+    const double rays = heat->config.wall_rays > 0 ? heat->config.wall_rays
+                                                   : fibrad_max(FIBRAD_WALL_RAYS_DEFAULT, RAYS_PER_BEAM * heat->beams);
     const double density = fibrad_max(RAYS_PER_PATCH / (square * square), rays / area);
     heat->patch_area = fibrad_max(square * square, meshes / (OUTSIDE * most));
     for (uint32_t k = 0; k < FIBRAD_WALLS; k++) {

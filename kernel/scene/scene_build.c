@@ -72,14 +72,13 @@ static int sphere_fault(fibrad_fault *fault, uint32_t sphere, int why) {
 }
 
 /* If walls are the reason for the status: the first wall that contradicts the box or the walls before it. */
-static int wall_fault(int status, fibrad_fault *fault, uint32_t n, const fibrad_scene_config *config) {
+static void wall_fault(int status, fibrad_fault *fault, uint32_t n, const fibrad_scene_config *config) {
     fibrad_scene_config some = *config;
     uint32_t wall = 0;
     if (status == FIBRAD_E_ARGUMENT && config->wall != NULL && config->walls <= FIBRAD_WALLS_MAX)
         for (some.walls = 1; some.walls <= config->walls && wall == 0; some.walls++)
             if (fibrad_walls_check(&some) == FIBRAD_E_ARGUMENT) wall = some.walls;
     if (fault != NULL) *fault = (fibrad_fault){n, n, UINT32_MAX, wall, wall > 0 ? FIBRAD_WHY_WALL : 0};
-    return status;
 }
 
 /* The caller's arrays, with strides of 0 replaced by 1. */
@@ -466,7 +465,7 @@ static int lay_out_scene(fibrad_scene **out, void *memory, size_t size, const fi
         if (given->clump != NULL) needed += fibrad_clumps_size(n);
         status = fibrad_arena_open(&arena, memory, size, needed);
     }
-    if (status != FIBRAD_OK) return wall_fault(status, fault, n, config);
+    if (status != FIBRAD_OK) return wall_fault(status, fault, n, config), status;
 
     const fibrad_spheres s = with_strides(given);
     /* the hash is 0 until the scene is complete, so objects of the last scene in this block return FIBRAD_E_STATE */

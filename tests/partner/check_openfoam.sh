@@ -10,7 +10,7 @@ test -n "${WM_PROJECT_DIR:-}" || export WM_PROJECT_DIR=/usr/share/openfoam
 work=$(mktemp -d) && trap 'rm -rf "$work"' EXIT || exit 1
 cp -r tests/partner/openfoam "$work/case" && cd "$work" || exit 1
 
-# 125 spheres, and the box about them. A square of the box is a face of OpenFOAM.
+# 125 spheres, contacts of 25 with the wall, and the box about them. A square of the box is a face of OpenFOAM.
 awk '
 function corner(axis, at, u, v,    p) {
     p[axis] = at; p[(axis + 1) % 3] = u; p[(axis + 2) % 3] = v
@@ -27,6 +27,8 @@ function side(axis, at,    i, j, a, c) {
 }
 BEGIN {
     print "x [m],y [m],z [m],r [m]" >"bed.csv"
+    print "i,j,W/K" >"contacts.csv"
+    for (k = 4; k < 125; k += 5) print k ",box_air,0.005" >"contacts.csv"
     for (k = 0; k < 125; k++) print k % 5 / 50 + .01 "," int(k / 5) % 5 / 50 + .01 "," int(k / 25) / 50 + .01 ",.0095" >"bed.csv"
     print "solid air"; side(0, .1)
     print "endsolid air\nsolid rest"; side(0, 0); side(1, 0); side(1, .1); side(2, 0); side(2, .1); print "endsolid rest"
@@ -35,7 +37,7 @@ BEGIN {
 (cd case && blockMesh && timeout 600 buoyantPimpleFoam) >foam.log 2>&1 &
 timeout 600 "$fibrad" couple bed.csv --openfoam case --window 0.01 --timeout 100 --faces box_air \
     --wall mesh:box.stl:solids:emissivity=0.9:temperature=650,box_rest:insulated --emissivity 0.9 --temperature 700 \
-    --heat-capacity 800 --density 2500 --json bed.json --quiet
+    --heat-capacity 800 --density 2500 --contacts contacts.csv --json bed.json --quiet
 status=$?
 wait $! || { tail -n 20 foam.log && exit 1; }
 test $status = 0 && grep -q '^End' foam.log || exit 1

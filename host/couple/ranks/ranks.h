@@ -20,7 +20,7 @@ typedef struct fibrad_block {
 static inline int fibrad_block_resize(fibrad_block *block, size_t size) {
     void *at = realloc(block->at, size);
     if (!at) return FIBRAD_E_MEMORY;
-    *block = (fibrad_block){at, size};
+    block->at = at, block->size = size;
     return FIBRAD_OK;
 }
 
