@@ -9,6 +9,7 @@
 #include "base/lanes/below.h"
 #include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
+#include "base/random.h"
 #include "workspace/workspace.h"
 
 /* Makes the first coordinates of normals along the axes of windows, and the even points. */
