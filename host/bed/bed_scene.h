@@ -3,7 +3,6 @@
 #ifndef BED_SCENE_H
 #define BED_SCENE_H
 
-#include "bed/bed.h"
 #include "bed/wall_option.h"
 #include "simple/fibrad_host.h"
 

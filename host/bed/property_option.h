@@ -3,13 +3,9 @@
 #ifndef PROPERTY_OPTION_H
 #define PROPERTY_OPTION_H
 
-#include <stdbool.h>
-
-#include "bed/bed.h"
 #include "bed/wall_option.h"
 #include "text/report.h"
 #include "text/read_curve.h"
-#include "fibrad.h"
 
 /* Largest temperature [K]. */
 #define TEMPERATURE_MAX 1e9

@@ -2,12 +2,8 @@
 #ifndef WALL_OPTION_H
 #define WALL_OPTION_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "bed/bed.h"
 #include "bed/wall_words.h"
-#include "fibrad.h"
 
 enum { WALLS_MAX = FIBRAD_WALLS_MAX, PLANES = 6 };
 

@@ -6,10 +6,6 @@
 #ifndef WALL_WORDS_H
 #define WALL_WORDS_H
 
-#include <stdbool.h>
-
-#include "fibrad.h"
-
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -1,7 +1,6 @@
 /* interrupt.c - Ctrl-C and kill end the program cleanly. SPDX-License-Identifier: MIT */
 
 #include <signal.h>
-#include <stddef.h>
 #include <unistd.h>
 
 #include "cli/message.h"

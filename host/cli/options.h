@@ -2,10 +2,6 @@
 #ifndef OPTIONS_H
 #define OPTIONS_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "fibrad.h"
 
 /* What becomes of the argument of an option. */

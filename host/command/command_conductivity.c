@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "command/commands.h"
 #include "conductivity/plates.h"
 #include "contact_options/contact_option.h"

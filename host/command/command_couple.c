@@ -1,8 +1,6 @@
 /* command_couple.c - `fibrad couple`: a bed in time beside another solver. SPDX-License-Identifier: MIT */
-#include <stdio.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "command/heat_options.h"
 #include "partner/partner.h"
 

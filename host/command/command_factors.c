@@ -6,13 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "cli/targets.h"
 #include "command/commands.h"
 #include "frames/solid_option.h"
 #include "plot/plot_bed.h"
 #include "simple/bed.h"
-#include "write/write.h"
 
 /* Methods of view factors by name, in the order of the enum. */
 enum method { METHOD_BEAM, METHOD_CAST, METHOD_MC, METHODS };
@@ -311,11 +309,6 @@ static void factors_report(struct factors_request *request, const struct bed *be
 /* Rays from each side of a triangle. Few sides have more rays each. */
 enum { VIEW_RAYS = 256, VIEW_RAYS_MOST = 1 << 14, VIEW_RAYS_IN_ALL = 1 << 19 };
 
-static uint32_t view_rays(uint32_t sides) {
-    const uint32_t rays = VIEW_RAYS_IN_ALL / sides;
-    return rays < VIEW_RAYS ? VIEW_RAYS : rays > VIEW_RAYS_MOST ? VIEW_RAYS_MOST : rays;
-}
-
 static double mean_of_two(double a, double b) { return (a + b) / 2; }
 
 /* Computes what each side of the triangles of walls sees: spheres and surroundings. */
@@ -327,9 +320,10 @@ static int find_views(struct factors_request *request, const struct bed *bed, fi
         [OUT] = {.name = {"F_surroundings", "F_surroundings_front", "F_surroundings_back"}, .join = mean_of_two}};
     const struct fibrad_triangles *triangles = &request->walls.meshes->triangles;
     const uint32_t sides = 2 * triangles->n;
+    const double rays = fmin(fmax(VIEW_RAYS_IN_ALL / sides, VIEW_RAYS), VIEW_RAYS_MOST);
     fibrad_side_view *view = malloc(sides * sizeof *view);
     int status = view ? side_arrays_begin(views, triangles, quantity, QUANTITIES) : message_memory();
-    if (!status) status = bed_options_made(&request->bed, bed, made, fibrad_bed_views(made, view_rays(sides), view));
+    if (!status) status = bed_options_made(&request->bed, bed, made, fibrad_bed_views(made, (uint32_t)rays, view));
     for (uint32_t s = 0; s < sides && !status; ++s) {
         views->quantity[TO_SPHERES].side[s] = view[s].spheres;
         views->quantity[OUT].side[s] = view[s].escaped;

@@ -1,8 +1,5 @@
 /* command_heat.c - `fibrad heat`: net radiative powers of grey spheres and walls. SPDX-License-Identifier: MIT */
-#include <stdio.h>
-#include <string.h>
 
-#include "cli/message.h"
 #include "command/heat_options.h"
 #include "plot/plot_heat.h"
 

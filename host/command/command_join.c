@@ -63,12 +63,6 @@ static int join_help(void) {
     return STATUS_OK;
 }
 
-static int join_parse(struct join_request *request, int argc, char **argv) {
-    int status = options_read("join", join_table, argc, argv, request);
-    if (!status && request->count == 0) status = message(STATUS_USAGE, "FILE is missing; see fibrad join --help");
-    return status ? status : outputs_check(&request->outputs, CONTENT_MATRIX, false);
-}
-
 /* Makes the scene of a matrix. The matrix needs the radii and the number of walls. Files of rows do not say where the
  * walls are, so each wall gets the same triangle above all spheres. */
 static int join_scene(const struct joined *joined, fibrad_scene **scene, void **block) {
@@ -203,7 +197,9 @@ static int join_run(struct join_request *request) {
 int command_join(int argc, char **argv) {
     struct join_request request = {.files = calloc((size_t)argc + 1, sizeof *request.files)};
     if (!request.files) return message_memory();
-    const int status = join_parse(&request, argc, argv);
+    int status = options_read("join", join_table, argc, argv, &request);
+    if (!status && request.count == 0) status = message(STATUS_USAGE, "FILE is missing; see fibrad join --help");
+    if (!status) status = outputs_check(&request.outputs, CONTENT_MATRIX, false);
     const int ended = status == STATUS_HELP ? join_help() : status ? status : join_run(&request);
     free(request.files);
     return ended;

@@ -9,9 +9,6 @@
 #ifndef CONDUCTIVITY_H
 #define CONDUCTIVITY_H
 
-#include <stdbool.h>
-
-#include "bed/bed.h"
 #include "bed/wall_option.h"
 #include "simple/fibrad_host.h"
 

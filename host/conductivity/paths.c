@@ -308,13 +308,7 @@ double conduction_worst(const struct conduction_rule *rule, const struct conduct
     return worst;
 }
 
-/* The paths per emitter that bring the worst error down to --error, with a tenth to spare. 0: no more are needed. */
-static double paths_for(const struct conduction_rule *rule, const struct conduction *result) {
-    const double over = conduction_worst(rule, result) / rule->error;
-    return over > 1 ? 1.1 * over * over * (double)result->paths : 0;
-}
-
-/* Follows rounds of more and more paths until the error is reached or the rays are used up. */
+/* Follows rounds of more and more paths until the error is reached, with a tenth to spare, or the rays are used up. */
 static int search(struct follower *f, uint32_t batches, struct conduction *result) {
     const struct conduction_rule *rule = f->rule;
     const uint32_t step = PARTS * batches;
@@ -325,7 +319,8 @@ static int search(struct follower *f, uint32_t batches, struct conduction *resul
         if (status) return status;
         const double paths = (double)result->paths, left = (double)rule->max_rays - (double)result->rays;
         const double affordable = floor(paths * left / (double)result->rays / step) * step;
-        more = fmin(paths_for(rule, result), GROWTH * paths) - paths;
+        const double over = conduction_worst(rule, result) / rule->error;
+        more = fmin(over > 1 ? 1.1 * over * over * paths : 0, GROWTH * paths) - paths;
         if (more > affordable) result->stopped = affordable < step, more = affordable;
     }
     return FIBRAD_OK;

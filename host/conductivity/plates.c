@@ -136,12 +136,6 @@ static void drop_idle(struct between *b) {
         if (through[i] <= IDLE * most) b->temperature[i] = NAN;
 }
 
-/* The area of the bed across the axis. */
-static double area_across(const struct plates *plates) {
-    return conduction_width(&plates->bed, &plates->walls, (plates->axis + 1) % 3) *
-           conduction_width(&plates->bed, &plates->walls, (plates->axis + 2) % 3);
-}
-
 /* The conductivity from what the upper plate and the spheres at it gain, and from the gradient in the inner half. The
  * error is that of the line and that of the powers. */
 static void read_conductivity(struct between *b, struct conduction_value *value) {
@@ -161,7 +155,9 @@ static void read_conductivity(struct between *b, struct conduction_value *value)
     *value = (struct conduction_value){NAN, NAN};
     if (n < PLATES_FITTED) return;
     gsl_fit_linear(b->at, 1, b->temperature, 1, n, &level, &slope, &cov00, &cov01, &variance, &squares);
-    value->k = gained / (area_across(plates) * -slope);
+    const double area = conduction_width(&plates->bed, &plates->walls, (plates->axis + 1) % 3) *
+                        conduction_width(&plates->bed, &plates->walls, (plates->axis + 2) % 3);
+    value->k = gained / (area * -slope);
     value->error = fabs(value->k) * hypot(sqrt(variance) / slope, gained != 0 ? sqrt(square) / gained : 0);
 }
 

@@ -6,8 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/message.h"
-
 #define ROUNDING 1e-12 /* of flows, over the sum of their magnitudes */
 
 int contacts_option(const char *text, void *contact_options) {

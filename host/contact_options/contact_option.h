@@ -3,7 +3,6 @@
 #ifndef CONTACT_OPTION_H
 #define CONTACT_OPTION_H
 
-#include "frames/bed_options.h"
 #include "frames/solid_option.h"
 
 enum { CONTACT_FILES_MAX = 8 };

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/message.h"
 #include "contact_options/contact_option.h"
 #include "simple/nearest.h"
 

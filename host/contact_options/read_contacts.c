@@ -3,30 +3,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "cli/targets.h"
 #include "contact_options/contact_option.h"
-#include "text/read_lines.h"
 #include "text/unit.h"
-
-/* The index of a sphere by its name. n: there is none. */
-static uint32_t find_sphere(const struct bed *bed, int64_t name) {
-    const uint32_t i = targets_first(bed->ids ? bed->id : NULL, bed->n, (unsigned long long)name);
-    return i < bed->n && bed_name(bed, i) == name ? i : bed->n;
-}
 
 /* Finds an end: a wall by its name, or a sphere. */
 static int name_of_end(const struct lines *lines, const char *text, const struct bed *bed, const struct walls *walls,
                        uint32_t *end) {
-    int64_t name;
     const uint32_t wall = wall_index(walls, text);
     *end = bed->n + wall;
     if (wall < WALLS_MAX) return STATUS_OK;
     char *rest;
-    name = strtoll(text, &rest, 10);
+    const int64_t name = strtoll(text, &rest, 10);
     if (rest == text || *rest) return lines_fault(lines, "'%.40s' is neither a sphere nor a wall", text);
-    *end = find_sphere(bed, name);
-    if (*end < bed->n) return STATUS_OK;
+    *end = targets_first(bed->ids ? bed->id : NULL, bed->n, (unsigned long long)name);
+    if (*end < bed->n && bed_name(bed, *end) == name) return STATUS_OK;
     return lines_fault(lines, "there is no sphere %" PRId64, name);
 }
 

@@ -3,11 +3,9 @@
 #define FIBRAD_COUPLE_INSITU_H
 
 #include <math.h>
-#include <stdbool.h>
 
 #include "couple/ranks/ranks.h"
 #include "couple/fibrad_couple.h"
-#include "fibrad_mesh.h"
 #include "simple/team.h"
 
 #define FIBRAD_OPENINGS_MAX 6   /* one a side */

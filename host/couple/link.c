@@ -5,7 +5,6 @@
  * Users ask the directory for the place of each id, and then tell the owners. From then on only ranks that share
  * particles exchange messages, with one value per particle, between buffers that stay in place. */
 #include <limits.h>
-#include <stdbool.h>
 #include <string.h>
 
 #include "couple/insitu.h"

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "couple/insitu.h"
-#include "fibrad_mesh.h"
 
 #define PATHS_WORTH 25      /* paths of a source are worth so many times those of a particle */
 #define PATHS_LEAST 512     /* of each source */

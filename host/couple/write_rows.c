@@ -1,5 +1,4 @@
 /* write_rows.c - writes the rows of each rank to a file. SPDX-License-Identifier: MIT */
-#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -5,15 +5,12 @@
 #include <ctype.h>
 #include <errno.h>
 #include <glob.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "bed/bed_scene.h"
-#include "cli/message.h"
-#include "frames/warnings.h"
 #include "plot/gnuplot.h"
 
 int bed_radius_option(const char *text, void *radius) {

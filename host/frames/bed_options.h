@@ -3,22 +3,12 @@
 #ifndef BED_OPTIONS_H
 #define BED_OPTIONS_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "bed/bed.h"
-#include "bed/property_option.h"
 #include "bed/units.h"
-#include "bed/wall_option.h"
-#include "cli/options.h"
-#include "cli/output.h"
 #include "cli/progress.h"
 #include "frames/column_option.h"
 #include "frames/warnings.h"
 #include "plot/plot_slice.h"
-#include "text/report.h"
 #include "read/read.h"
-#include "simple/fibrad_host.h"
 #include "write/outputs.h"
 
 /* Rows of tables of options of commands whose request begins with a struct bed_options, without the outermost braces.

@@ -4,8 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "cli/message.h"
-
 const struct curve_axes solid_axes = {CURVE_AXIS_KELVINS, {"k lambda conductivity", SOLID_UNIT}};
 
 int solid_option(const char *text, void *solid) {

@@ -5,7 +5,6 @@
 #ifndef SOLID_OPTION_H
 #define SOLID_OPTION_H
 
-#include "conductivity/conductivity.h"
 #include "frames/bed_options.h"
 
 #define SOLID_UNIT  "W/(m K)"

@@ -2,10 +2,10 @@
 #include "frames/warnings.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "cli/message.h"
+#include "cli/output.h"
 
 enum kind {
     OTHER_NAMES,
@@ -200,14 +200,8 @@ void warn_box(struct warned *warned, const struct walls *walls) {
 
 /* ---- values ----------------------------------------------------------------------------------------------------- */
 
-/* Whether the name of a column says degrees Celsius. */
-static bool names_celsius(const char *column) {
-    const size_t length = strlen(column);
-    return (length > 2 && strcmp(column + length - 2, "_C") == 0) || strstr(column, "elsius");
-}
-
 void warn_celsius(struct warned *warned, const char *column) {
-    if (names_celsius(column) && is_new(warned, CELSIUS))
+    if ((output_ends(column, "_C") || strstr(column, "elsius")) && is_new(warned, CELSIUS))
         WARN(0, "the column %.40s is taken as kelvins; --temperature-unit C is for degrees Celsius", column);
 }
 

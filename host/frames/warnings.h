@@ -5,12 +5,7 @@
 #ifndef WARNINGS_H
 #define WARNINGS_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "bed/bed.h"
 #include "bed/property_option.h"
-#include "bed/wall_option.h"
 #include "simple/fibrad_host.h"
 
 /* Warnings of a run so far. Begin with zeroes. */

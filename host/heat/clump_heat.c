@@ -1,9 +1,7 @@
 /* clump_heat.c - heat of clumps: their areas and volumes, and results by body. SPDX-License-Identifier: MIT */
 #include <gsl/gsl_math.h>
-#include <math.h>
 #include <stdlib.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 
 int clumps_begin(struct heat *h) {

@@ -1,8 +1,6 @@
 /* face.c - the hemispherical emissivity of the open face of a bed. SPDX-License-Identifier: MIT */
 #include <gsl/gsl_math.h>
-#include <math.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 #include "simple/bed.h"
 

@@ -6,9 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bed/units.h"
-#include "cli/message.h"
-
 #define COEFFICIENT_MAX 1e12 /* [W/(m2 K)] */
 
 int convection_option(const char *text, void *film_options) {

@@ -3,7 +3,6 @@
 #ifndef HEAT_H
 #define HEAT_H
 
-#include "frames/bed_options.h"
 #include "contact_options/contact_option.h"
 
 /* ---- what is given of each sphere and wall: its temperature or its power ----------------------------------------- */
@@ -20,19 +19,14 @@ struct given_options {
     double surroundings;        /* [K] their temperature, of a table that at 0 s; NaN: not given */
 };
 
-/* Temperatures of walls from tables, in the unit of the options: over time, or of each triangle. n = 0: the wall has
- * none. */
-struct wall_tables {
-    struct curve curve[WALLS_MAX], column[WALLS_MAX];
-};
-
 /* Temperatures and powers of one bed. NaN: not given. */
 struct given {
     double *temperature; /* [spheres] [K] */
     double *power;       /* [spheres] [W] */
     double wall_temperature[WALLS_MAX], wall_power[WALLS_MAX];
     unsigned char insulated[WALLS_MAX];
-    struct wall_tables tables;
+    /* temperatures of walls from tables, in the unit of the options: over time, or of each triangle; n = 0: none */
+    struct curve curve[WALLS_MAX], column[WALLS_MAX];
     double *side_temperature; /* [2 triangles] [K] as in fibrad_heat_sources; NULL: no side has one of its own */
 };
 

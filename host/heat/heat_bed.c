@@ -1,10 +1,9 @@
 /* heat_bed.c - the heat problem of one bed, from options and columns, and what is written of it.
  * SPDX-License-Identifier: MIT */
-#include <gsl/gsl_math.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 
 /* Allocates the arrays of the result, those of spheres in one block. The last INSIDE are of spheres that conduct. */
@@ -99,7 +98,7 @@ int heat_find_places(struct heat *h, const bool *more) {
     const struct given *given = &h->values;
     bool own[WALLS_MAX] = {false}, any = false;
     for (uint32_t k = 0; k < h->walls.count; ++k)
-        own[k] = given->tables.column[k].n > 0 || (more && more[k]), any = any || own[k];
+        own[k] = given->column[k].n > 0 || (more && more[k]), any = any || own[k];
     if (h->touching.n == 0 || !any) return STATUS_OK;
     const int status = contacts_find_places(&h->touching, h->bed, &h->walls, own);
     if (!status) contacts_place(&h->touching, h->bed->n, given->side_temperature, given->wall_temperature);

@@ -1,7 +1,6 @@
 /* heat_error.c - how fine a heat problem is solved: by default, and for --error. SPDX-License-Identifier: MIT */
 #include <math.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 
 /* Default numbers of directions. _BEGIN: the least with --error. _BRIGHT: if the mean emissivity is at most BRIGHT and

@@ -2,10 +2,7 @@
 #include "heat/heat.h"
 
 #include <gsl/gsl_math.h>
-#include <math.h>
 #include <stdlib.h>
-
-#include "cli/message.h"
 
 #define POWER_MAX 1e30 /* [W] largest absolute value of an option; far below FIBRAD_POWER_MAX */
 
@@ -109,7 +106,7 @@ static int given_walls(const struct given_options *options, const struct bed *be
         given->insulated[k] = (said->given & WALL_INSULATED) != 0;
         status = check_capacity(options, bed, walls, k);
         if (status) return status;
-        status = wall_temperature(options, said, name, &given->tables.curve[k], &given->tables.column[k], temperature);
+        status = wall_temperature(options, said, name, &given->curve[k], &given->column[k], temperature);
         *temperature += options->zero;
         if (said->given & WALL_POWER && wall_endless(walls, bed, &walls->wall[k]))
             return message(STATUS_USAGE, "--wall: %s is endless and needs a temperature", name);
@@ -143,7 +140,7 @@ static int given_triangles(const struct walls *walls, uint32_t wall, const struc
 static int given_sides(const struct walls *walls, double zero, struct given *given) {
     int status = STATUS_OK;
     for (uint32_t k = 0; k < walls->count && !status; ++k) {
-        const struct curve *column = &given->tables.column[k];
+        const struct curve *column = &given->column[k];
         if (column->n == 0) continue;
         const size_t sides = walls->meshes ? 2 * (size_t)walls->meshes->triangles.n : 0;
         if (!given->side_temperature) {
@@ -219,7 +216,7 @@ void given_free(struct given *given) {
     free(given->temperature);
     free(given->power);
     free(given->side_temperature);
-    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&given->tables.curve[k]), curve_free(&given->tables.column[k]);
+    for (int k = 0; k < WALLS_MAX; ++k) curve_free(&given->curve[k]), curve_free(&given->column[k]);
 }
 
 void given_heat_sources(struct given *given, uint32_t n, double square_metres, fibrad_heat_sources *sources) {

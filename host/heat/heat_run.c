@@ -2,7 +2,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 
 /* Says why no temperatures have the given powers if none is given at all. sum: of the powers [W]. magnitude: of their

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/time_run.h"
 #include "text/read_number.h"
 
@@ -105,7 +104,7 @@ static void outside_at(const struct time_run *m, double time, double wall[WALLS_
     const struct heat *h = m->heat;
     const double around = h->given.surroundings;
     for (uint32_t k = 0; k < h->walls.count; ++k)
-        wall[k] = temperature_at(m, &h->values.tables.curve[k], time, h->sources.wall_temperature[k]);
+        wall[k] = temperature_at(m, &h->values.curve[k], time, h->sources.wall_temperature[k]);
     *surroundings = temperature_at(m, &h->given.ambient_curve, time, isnan(around) ? 0 : around);
 }
 
@@ -123,7 +122,7 @@ static int find_times(const struct heat *h, struct span_end **ends, size_t *coun
     double listed[TIMES_MAX];
     int given = 0, status = o->times ? options_numbers("--times", o->times, TIMES_MAX, listed, &given) : STATUS_OK;
     if (status) return status;
-    for (uint32_t k = 0; k < h->walls.count; ++k) room += h->values.tables.curve[k].n;
+    for (uint32_t k = 0; k < h->walls.count; ++k) room += h->values.curve[k].n;
     room += h->given.ambient_curve.n + h->film.gas_curve.n;
     struct span_end *end = *ends = malloc(room * sizeof *end);
     if (!end) return message_memory();
@@ -135,7 +134,7 @@ static int find_times(const struct heat *h, struct span_end **ends, size_t *coun
                            end[k].time, o->until);
     end[n++] = (struct span_end){o->until, !o->times};
     for (uint32_t k = 0; k < h->walls.count + 2; ++k) {
-        const struct curve *curve = k < h->walls.count    ? &h->values.tables.curve[k]
+        const struct curve *curve = k < h->walls.count    ? &h->values.curve[k]
                                     : k == h->walls.count ? &h->given.ambient_curve
                                                           : &h->film.gas_curve;
         for (size_t p = 0; p < curve->n; ++p)
@@ -411,19 +410,16 @@ static void print_summary(struct time_run *m) {
  * the whole run. */
 static void warn_lag(const struct time_run *m) {
     const double until = m->now, step = m->steps > 0 ? until / (double)m->steps : until;
-    const char *file = m->heat->options.name;
+    char than[80];
     if (m->lag > until)
-        message_at(
-            STATUS_OK, file, 0,
-            "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only after "
-            "up to %.3g s; --until ends before, at %g s",
-            m->lag, until);
-    else if (m->lag > step)
-        message_at(
-            STATUS_OK, file, 0,
-            "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only after "
-            "up to %.3g s; steps are shorter, %.3g s on the mean",
-            m->lag, step);
+        snprintf(than, sizeof than, "--until ends before, at %g s", until);
+    else
+        snprintf(than, sizeof than, "steps are shorter, %.3g s on the mean", step);
+    if (m->lag > step)
+        message_at(STATUS_OK, m->heat->options.name, 0,
+                   "warning: --solid-conductivity: insides of spheres are taken to be steady, but become steady only "
+                   "after up to %.3g s; %s",
+                   m->lag, than);
 }
 
 /* Warns of tables whose ends the run has left. */
@@ -432,7 +428,7 @@ static void warn_tables(const struct time_run *m) {
     struct warned *warned = &h->options.warned;
     heat_warn_excess(h, m->excess);
     for (uint32_t k = 0; k < h->walls.count; ++k)
-        warn_times(warned, wall_name(&h->walls, k), &h->values.tables.curve[k], m->now);
+        warn_times(warned, wall_name(&h->walls, k), &h->values.curve[k], m->now);
     warn_times(warned, "--gas-temperature", &h->film.gas_curve, m->now);
     warn_times(warned, "--ambient", &h->given.ambient_curve, m->now);
 }

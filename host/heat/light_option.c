@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
-
 enum { TEXT_MAX = 400 };
 #define FLUX_MAX 1e15 /* [W/m2] */
 

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/heat.h"
 #include "simple/cylinder.h"
 

@@ -2,10 +2,7 @@
  * SPDX-License-Identifier: MIT */
 #include <gsl/gsl_math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "bed/units.h"
-#include "cli/message.h"
 #include "heat/heat.h"
 
 enum { SLICES_MAX = 100000 };

@@ -2,8 +2,6 @@
 #ifndef MESHES_H
 #define MESHES_H
 
-#include <stddef.h>
-
 #include "fibrad_mesh.h"
 #include "mesh/welded.h"
 

@@ -11,7 +11,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/message.h"
 #include "fibrad_mesh.h"
 #include "text/read_lines.h"
 

@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "heat/time_run.h"
 #include "partner/partner.h"
 
@@ -79,9 +78,11 @@ static int make_faces(struct heat *h, struct exchange *e) {
     const struct meshes *meshes = h->walls.meshes;
     const uint32_t triangles = meshes ? meshes->triangles.n : 0;
     double *block = calloc(9 * (size_t)triangles + 1, sizeof *block);
-    f->triangle = calloc(triangles + (size_t)1, sizeof *f->triangle);
+    f->triangle = calloc(2 * (size_t)triangles + 1, sizeof *f->triangle);
     f->centre = (double(*)[3])block, f->area = block + 3 * (size_t)triangles;
     if (!block || !f->triangle) return message_memory();
+    f->of_triangle = f->triangle + triangles;
+    for (uint32_t t = 0; t < triangles; ++t) f->of_triangle[t] = NOT_EXCHANGED;
     double **const array[] = {&f->temperature, &f->film, &f->behind, &f->energy, &f->found};
     for (size_t a = 0; a < 5; ++a) *array[a] = f->area + (a + 1) * triangles;
     for (uint32_t t = 0; t < 3 * triangles; ++t) f->temperature[t] = NAN;
@@ -97,7 +98,7 @@ static int make_faces(struct heat *h, struct exchange *e) {
             f->area[f->n] = surface_area(&mesh->surface, own) * gsl_pow_2(h->bed->metres);
             const double *side = h->values.side_temperature;
             f->found[f->n] = side && !isnan(side[2 * t]) ? side[2 * t] : h->values.wall_temperature[k];
-            f->triangle[f->n++] = t;
+            f->of_triangle[t] = f->n, f->triangle[f->n++] = t;
         }
     }
     for (uint32_t k = h->walls.count; k <= WALLS_MAX; ++k) f->first[k] = f->n;
@@ -146,22 +147,11 @@ static int make_sides(struct coupling *c) {
 
 /* ---- contacts that end on faces ---------------------------------------------------------------------------------- */
 
-/* Finds the face that contact k touches. False: there is none. Faces of a wall are in the order of triangles. */
+/* Finds the face that contact k touches. False: there is none. */
 static bool find_face(const struct coupling *c, uint32_t k, uint32_t *face) {
-    const struct contact_state *t = &c->run.heat->touching;
-    const struct exchange_faces *f = &c->exchange->faces;
-    if (!t->side || t->side[k] == CONTACT_NO_SIDE) return false;
-    const uint32_t wall = t->second[k] - c->run.heat->bed->n;
-    uint32_t low = f->first[wall], high = f->first[wall + 1];
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2;
-        if (f->triangle[middle] < t->side[k] / 2)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    *face = low;
-    return low < f->first[wall + 1] && f->triangle[low] == t->side[k] / 2;
+    const uint32_t *side = c->run.heat->touching.side;
+    *face = !side || side[k] == CONTACT_NO_SIDE ? NOT_EXCHANGED : c->exchange->faces.of_triangle[side[k] / 2];
+    return *face != NOT_EXCHANGED;
 }
 
 static double conductance_of(const struct contact_state *t, uint32_t k) { return t->conductance[k] / t->per_watt; }

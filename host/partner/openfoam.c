@@ -24,7 +24,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "cli/output.h"
 #include "partner/partner.h"
 #include "text/read_number.h"
 

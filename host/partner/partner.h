@@ -6,17 +6,16 @@
 #ifndef PARTNER_H
 #define PARTNER_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
 #include "heat/heat.h"
 
 /* What is exchanged at faces. A face is a triangle of a wall that the partner has. Faces are in the order of walls, and
  * those of a wall in the order of triangles. The partner gives a face a temperature, or a film and the temperature
  * behind the film. Arrays of the partner begin as NaN: not given. */
+enum { NOT_EXCHANGED = UINT32_MAX };
 struct exchange_faces {
     uint32_t n;
     uint32_t *triangle;            /* [n] number of the triangle in all meshes together */
+    uint32_t *of_triangle;         /* [triangles] the face of each triangle, or NOT_EXCHANGED */
     uint32_t first[WALLS_MAX + 1]; /* faces of wall k: first[k] to first[k + 1] - 1; none if the wall is no mesh */
     double (*centre)[3];           /* [n] [m] */
     double *area;                  /* [n] [m2] */

@@ -12,9 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/message.h"
 #include "partner/partner.h"
-#include "text/read_lines.h"
 #include "text/xml.h"
 
 enum { NAME = 128, ITEMS = 64, PARTICLES = WALLS_MAX };

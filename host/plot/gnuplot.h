@@ -2,7 +2,6 @@
 #ifndef GNUPLOT_H
 #define GNUPLOT_H
 
-#include <stdbool.h>
 #include <stdio.h>
 #include <sys/types.h>
 

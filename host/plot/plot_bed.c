@@ -8,7 +8,6 @@
 #include "cli/message.h"
 #include "plot/gnuplot.h"
 #include "plot/plot_data.h"
-#include "plot/plot_slice.h"
 
 static const char *kind_of(const struct contents *what) { return what->grey ? "exchange" : "view"; }
 

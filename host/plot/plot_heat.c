@@ -2,12 +2,12 @@
 #include "plot/plot_heat.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "bed/units.h"
 #include "cli/message.h"
 #include "plot/gnuplot.h"
+#include "text/read_number.h"
 
 /* The least and largest number of an array. NaN are left out. */
 struct extremes {
@@ -52,20 +52,15 @@ static void print_head(FILE *script, const struct output *output, const char *na
     fputs("' at screen 0.015,0.905 tc '#444444'\n", script);
 }
 
-static int ascending_sizes(const void *a, const void *b) {
-    const double x = fabs(*(const double *)a), y = fabs(*(const double *)b);
-    return (x > y) - (x < y);
-}
-
 /* The end of the colour scale. One sphere of fifty exceeds this power. So a few large powers do not make all other
  * spheres grey. 0: out of memory. */
 static double power_shown(const double *value, uint32_t n) {
     double *power = malloc(n * sizeof *power);
     if (!power) return 0;
-    for (uint32_t i = 0; i < n; ++i) power[i] = value[i];
-    qsort(power, n, sizeof *power, ascending_sizes);
-    double most = fabs(power[(n - 1) * (uint64_t)49 / 50]);
-    if (!(most > 0)) most = fabs(power[n - 1]);
+    for (uint32_t i = 0; i < n; ++i) power[i] = fabs(value[i]);
+    qsort(power, n, sizeof *power, number_order);
+    double most = power[(n - 1) * (uint64_t)49 / 50];
+    if (!(most > 0)) most = power[n - 1];
     free(power);
     return most > 0 ? most : 1;
 }

@@ -2,10 +2,8 @@
 #ifndef PLOT_SLICE_H
 #define PLOT_SLICE_H
 
-#include <stdbool.h>
 #include <stdio.h>
 
-#include "bed/bed.h"
 #include "bed/wall_option.h"
 
 /* A plane across an axis. Zeroes: across y, where the default is. */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "mesh/meshes.h"
 #include "read/read.h"
 

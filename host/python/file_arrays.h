@@ -4,9 +4,6 @@
 #ifndef FILE_ARRAYS_H
 #define FILE_ARRAYS_H
 
-#include <stddef.h>
-#include <stdint.h>
-
 #include "fibrad.h"
 
 #define FILE_ARRAYS_EXPORT __attribute__((visibility("default")))

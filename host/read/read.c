@@ -8,7 +8,6 @@
 #include <inttypes.h>
 #include <stdlib.h>
 
-#include "cli/message.h"
 #include "read/read_format.h"
 
 struct reader {

@@ -2,8 +2,6 @@
 #ifndef READ_H
 #define READ_H
 
-#include <stdbool.h>
-
 #include "bed/bed.h"
 #include "read/read_options.h"
 #include "text/read_lines.h"

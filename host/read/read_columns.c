@@ -8,7 +8,6 @@
 #include <strings.h>
 
 #include "bed/units.h"
-#include "cli/message.h"
 #include "cli/spelling.h"
 #include "text/read_number.h"
 #include "text/text.h"

@@ -3,8 +3,6 @@
 #define READ_ROWS_H
 
 #include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
 #include "fibrad.h"
 

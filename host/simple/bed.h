@@ -5,7 +5,6 @@
 #include "simple/bodies.h"
 #include "simple/network.h"
 #include "simple/store.h"
-#include "simple/team.h"
 
 /* What steps in time need (stepper.c, corrected.c). */
 typedef struct fibrad_stepping {

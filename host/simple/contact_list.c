@@ -3,7 +3,6 @@
 #include "simple/contact_list.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 int fibrad_contact_add(struct contact_block *block, const struct contact_found *contact) {
@@ -18,19 +17,15 @@ int fibrad_contact_add(struct contact_block *block, const struct contact_found *
     return FIBRAD_OK;
 }
 
-/* The distance of the first centre from the plane in which both surfaces cut each other. */
-static double plane_of_spot(const struct contact_found *c) {
-    if (isinf(c->other)) return c->distance;
-    return (c->distance * c->distance + c->radius * c->radius - c->other * c->other) / (2 * c->distance);
-}
-
 /* The radius of the spot. 0: the ends do not touch. */
 static double spot_of(const struct contact_found *c, const fibrad_contact_rule *rule) {
-    const double scale = rule->scale > 0 ? rule->scale : 1, plane = plane_of_spot(c);
-    const double overlap = (isinf(c->other) ? c->radius : c->radius + c->other) - c->distance;
+    const double scale = rule->scale > 0 ? rule->scale : 1, r = c->radius, d = c->distance;
+    /* of the first centre from the plane in which both surfaces cut each other */
+    const double plane = isinf(c->other) ? d : (d * d + r * r - c->other * c->other) / (2 * d);
+    const double overlap = (isinf(c->other) ? r : r + c->other) - d;
     if (rule->spots == FIBRAD_SPOTS_NONE || !(overlap > 0)) return 0;
-    const double mean = isinf(c->other) ? c->radius : c->radius * c->other / (c->radius + c->other);
-    const double square = rule->spots == FIBRAD_SPOTS_LENS ? c->radius * c->radius - plane * plane : mean * overlap;
+    const double mean = isinf(c->other) ? r : r * c->other / (r + c->other);
+    const double square = rule->spots == FIBRAD_SPOTS_LENS ? r * r - plane * plane : mean * overlap;
     return square > 0 ? scale * sqrt(square) : 0;
 }
 

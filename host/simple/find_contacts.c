@@ -3,7 +3,6 @@
  * Spheres are sorted by classes of radius, each within a factor of two, and each class by the cells of a grid of its
  * own. Each sphere looks for smaller ones. So a large sphere among many small ones costs what its neighbours cost. */
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: MIT */
 #include "simple/heap.h"
 
-#include "fibrad_mesh.h"
-
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,6 @@
 
 #include <stdbool.h>
 
-#include "fibrad_mesh.h"
 #include "simple/fibrad_host.h"
 
 /* fmax and fmin would need the library of mathematics. */

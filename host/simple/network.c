@@ -7,7 +7,6 @@
 #include "simple/network.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 enum { ROWS = 128, ITERATIONS_MAX = 2000 };

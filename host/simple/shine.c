@@ -39,12 +39,6 @@ static int begin_shine(struct shine_tasks *t) {
     return FIBRAD_OK;
 }
 
-static void end_shine(struct shine_tasks *t) {
-    free(t->now);
-    free(t->kept);
-    free(t->ray);
-}
-
 static int shine_task(void *tasks, int thread, uint32_t task) {
     const struct shine_tasks *t = tasks;
     return fibrad_heat_shine(t->bed->heat, &t->bed->team.work[thread], t->light, task, t->now, &t->kept[task],
@@ -247,7 +241,9 @@ static int shine_lights(fibrad_bed *bed, const fibrad_light_sources *s, uint32_t
     if (!status) status = absorb(&tasks, &now);
     if (!status) status = fibrad_heat_sum_light(bed->heat, tasks.all, now.absorbed_first, now.wall_absorbed_first);
     if (!status) status = fibrad_heat_keep_light(bed->heat, light);
-    end_shine(&tasks);
+    free(tasks.now);
+    free(tasks.kept);
+    free(tasks.ray);
     bed->light = status ? last : light;
     free(status ? light : last);
     if (status) return status;

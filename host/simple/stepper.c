@@ -22,7 +22,6 @@
 #include <string.h>
 
 #include "simple/bed.h"
-#include "simple/bodies.h"
 #include "simple/nearest.h"
 
 #define GAMMA     0.29289321881345247560 /* 1 - sqrt(1/2) */
@@ -130,10 +129,6 @@ static const uint32_t *members_of(const struct stepper *m, const uint32_t *b, ui
     return bodies ? bodies->member + bodies->start[*b] : b;
 }
 
-static uint32_t bodies_of(const struct stepper *m) {
-    return m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
-}
-
 /* Whether a sphere exchanges no heat with any other. */
 static bool stands_alone(const struct stepper *m, uint32_t i) {
     const fibrad_bodies *bodies = m->bed->bodies;
@@ -239,7 +234,8 @@ static void balance_energy(struct stepper *m, double length) {
         left -= m->result.wall_power[b];
         if (wall_stores(m, b)) of_walls += m->span->wall_capacity[b];
     }
-    for (uint32_t b = 0; b < bodies_of(m); ++b) {
+    const uint32_t bodies = m->bed->bodies ? m->bed->bodies->n : m->bed->facts.spheres;
+    for (uint32_t b = 0; b < bodies; ++b) {
         double missing = 0, stiff = 0;
         uint32_t count;
         const uint32_t *member = members_of(m, &b, &count);
@@ -461,14 +457,9 @@ static int check_stores(fibrad_bed *bed, const fibrad_heat_sources *s, const fib
     return find_beyond(bed, span, span->temperature) ? FIBRAD_E_ARGUMENT : FIBRAD_OK;
 }
 
-/* The first member of the clump of a sphere. */
-static uint32_t first_member(const fibrad_bed *bed, uint32_t i) {
-    return bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
-}
-
 /* Whether a sphere stores heat as the first member of its clump does, and begins as it. */
 static bool is_like_first(const fibrad_bed *bed, const fibrad_span *span, uint32_t i) {
-    const uint32_t first = first_member(bed, i);
+    const uint32_t first = bed->bodies ? bed->bodies->member[bed->bodies->start[bed->bodies->body[i]]] : i;
     const double melted[] = {span->melted ? span->melted[i] : 0, span->melted ? span->melted[first] : 0};
     return span->temperature[i] == span->temperature[first] &&
            (span->capacity[i] == INFINITY) == (span->capacity[first] == INFINITY) &&

@@ -4,7 +4,6 @@
  * or hollow part are within reach, too. They lie in front of the plane through the nearest place no more than by a
  * tenth of the distance, and are not counted. In a corner of a wall there are two such places or three. */
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 
 #include "simple/contact_list.h"

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <strings.h>
 
-#include "cli/message.h"
 #include "text/header.h"
 #include "text/unit.h"
 

@@ -11,7 +11,6 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "cli/message.h"
 #include "cli/output.h"
 #include "text/read_number.h"
 

@@ -3,10 +3,6 @@
 #ifndef READ_LINES_H
 #define READ_LINES_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "cli/message.h"
 
 struct gzFile_s;

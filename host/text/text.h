@@ -2,7 +2,6 @@
 #ifndef TEXT_H
 #define TEXT_H
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

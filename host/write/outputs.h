@@ -2,10 +2,6 @@
 #ifndef OUTPUTS_H
 #define OUTPUTS_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "cli/output.h"
 #include "write/write.h"
 

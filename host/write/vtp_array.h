@@ -4,7 +4,6 @@
 #ifndef VTP_ARRAY_H
 #define VTP_ARRAY_H
 
-#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 

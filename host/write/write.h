@@ -2,14 +2,10 @@
 #ifndef WRITE_H
 #define WRITE_H
 
-#include <stdbool.h>
 #include <stdio.h>
 
-#include "bed/bed.h"
 #include "conductivity/conductivity.h"
-#include "bed/wall_option.h"
 #include "text/report.h"
-#include "simple/fibrad_host.h"
 
 /* A further array of a .npz. It replaces an array of the same name that every .npz has. */
 struct array {

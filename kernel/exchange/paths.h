@@ -7,10 +7,8 @@
 #define FIBRAD_EXCHANGE_PATHS_H
 
 #include "base/elementary.h"
-#include "base/random.h"
 #include "base/sobol.h"
 #include "ray/tracer.h"
-#include "workspace/workspace.h"
 
 /* ---- where a ball that conducts gives off what it absorbs at a point --------------------------------------------- */
 

@@ -1,10 +1,8 @@
 /* paths_lanes.c - traces paths. Compiled once per instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
-#include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
 #include "exchange/paths.h"
 #include "scene/walls.h"
-#include "scene/surroundings.h"
 
 /* Points of the unit sphere are made this many at a time. Most paths from a sphere take fewer. */
 #define PATH_POINTS 4

@@ -1,8 +1,6 @@
 /* reemission.c - relative conductivity, and what a ball gives off evenly. SPDX-License-Identifier: MIT */
 #include "exchange/paths.h"
 
-#include "fibrad.h"
-
 /* From here on the series of above_leading is right to rounding. */
 #define SERIES_FROM 24
 

@@ -2,7 +2,6 @@
  *
  * The paths come in parts. Each part begins at evenly spread points, which are moved at random, part by part. So the
  * spread of the parts tells the error of their mean. */
-#include "base/elementary.h"
 #include "exchange/paths.h"
 #include "row/row.h"
 

@@ -15,7 +15,6 @@
 #include "furnace/furnace.h"
 
 #include "base/elementary.h"
-#include "base/random.h"
 
 #define PLANE_NONE 1e300      /* m: distance of a plane that the bundle never meets */
 #define WALL_NONE  UINT32_MAX /* the bundle is on no wall */

@@ -1,12 +1,9 @@
 /* heat.c - lays out a heat problem, moves it to another scene, and has its beams followed. SPDX-License-Identifier: MIT
  */
-#include "base/arena.h"
-#include "base/dispatch.h"
 #include "patches/clump_caps.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
-#include "patches/sphere_patch.h"
 #include "heat/sweep.h"
 #include "sample/direction.h"
 

@@ -47,7 +47,6 @@
  *
  * A stream of gas makes the system one that is not symmetric. During a search its temperatures are given. Where a
  * search would end they are found anew, with the radiation that now arrives, until they no longer change. */
-#include "heat/solution.h"
 #include "patches/pencils.h"
 #include "heat/sweep.h"
 

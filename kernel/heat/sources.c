@@ -1,5 +1,4 @@
 /* sources.c - checks the sources of a solution, and sets the first radiosities. SPDX-License-Identifier: MIT */
-#include "base/port.h"
 #include "heat/solution.h"
 
 #define HEAT_TOLERANCE  1e-3

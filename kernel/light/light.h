@@ -4,8 +4,6 @@
 
 #include "fibrad_light.h"
 #include "patches/problem.h"
-#include "window/points.h"
-#include "workspace/workspace.h"
 
 /* ---- the part of a window that no triangle hides from the light -------------------------------------------------- */
 

@@ -4,10 +4,8 @@
  * a part of a patch is reflected from where it falls. All light that a body reflects first is known. The rays that
  * leave the body share it out. Where few rays meet a body, patches that are lit wholly reflect without rays. Rays of
  * narrow light go on for some hits, as long as there are many of them on a body. */
-#include "base/random.h"
 #include "base/vector.h"
 #include "patches/subdivision.h"
-#include "patches/problem.h"
 #include "light/light.h"
 #include "ray/tracer.h"
 #include "scene/walls.h"

@@ -4,9 +4,7 @@
  * falls. On a free sphere each patch gets exactly what falls on it. */
 #include "base/vector.h"
 #include "patches/subdivision.h"
-#include "patches/problem.h"
 #include "light/light.h"
-#include "patches/sphere_patch.h"
 
 #define SHINE_SPHERES 64u /* of a task */
 #define SHINE_RULE    4u  /* points along an edge of a patch, for what falls on it */

@@ -1,6 +1,5 @@
 /* line_set.c - sets of lines for rows of a matrix. SPDX-License-Identifier: MIT */
 #include "mask/line_set.h"
-#include "base/arena.h"
 #include "base/vector.h"
 #include "sample/direction.h"
 #include "sample/line.h"

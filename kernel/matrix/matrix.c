@@ -2,9 +2,7 @@
  *
  * The rows stay in their collections. The matrix knows where each row is. Tasks average ranges of rows. Then these
  * are moved together, and the row sums are corrected. docs/methods.md section 5. */
-#include "base/arena.h"
 #include "matrix/matrix.h"
-#include "scene/scene.h"
 
 #define TASKS_MAX 1024u
 

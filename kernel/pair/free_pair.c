@@ -1,8 +1,6 @@
 /* free_pair.c - finds pairs of spheres that nothing can come between. SPDX-License-Identifier: MIT */
 #include "pair/free_pair.h"
-#include "base/random.h"
 #include "base/vector.h"
-#include "sample/tables.h"
 #include "scene/grid_walk.h"
 
 /* In scenes with up to this many spheres all pairs are tried. */

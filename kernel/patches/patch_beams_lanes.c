@@ -1,12 +1,10 @@
 /* patch_beams_lanes.c - the patches that the beams of a sphere and the rays of walls connect. Compiled once per
  * instruction set. SPDX-License-Identifier: MIT */
 #include FIBRAD_LANES_HEADER
-#include "base/random.h"
 #include "base/vector.h"
 #include "patches/subdivision.h"
 #include "patches/patch_beams_lanes.h"
 #include "patches/pencils.h"
-#include "patches/sphere_patch.h"
 #include "ray/tracer.h"
 #include "row/mesh_share_lanes.h"
 #include "row/wall_share_lanes.h"

@@ -2,9 +2,7 @@
 #ifndef FIBRAD_PATCHES_PATCH_BEAMS_LANES_H
 #define FIBRAD_PATCHES_PATCH_BEAMS_LANES_H
 
-#include "base/dispatch.h"
 #include "patches/problem.h"
-#include "workspace/workspace.h"
 
 /* Follows the beams of one task. The tasks are, in this order: spheres by their position, rows of fine fours, and
  * stretches of heat->ray. Errors: FIBRAD_E_WORK: the work memory is too small; FIBRAD_E_SIZE: the memory of the problem

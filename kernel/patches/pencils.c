@@ -5,9 +5,7 @@
  * where on the bodies light leaves and arrives. Each of them stands for an equal number of beams. */
 #include "patches/subdivision.h"
 #include "patches/pencils.h"
-#include "base/arena.h"
 #include "pair/free_pair.h"
-#include "patches/sphere_patch.h"
 
 /* Number of bodies that a row sees, times the solid fraction, over the square root of its beams. Measured in random
  * beds of equal spheres: 0.75 at the solid fraction 0.6, and 1.1 at 0.2. */

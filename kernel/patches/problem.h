@@ -11,14 +11,11 @@
 #ifndef FIBRAD_PATCHES_PROBLEM_H
 #define FIBRAD_PATCHES_PROBLEM_H
 
-#include "fibrad_heat.h"
 #include "base/sobol.h"
 #include "contact/contact.h"
 #include "patches/harmonics.h"
-#include "mesh/mesh.h"
 #include "rings/rings.h"
 #include "patches/sphere_patch.h"
-#include "scene/scene.h"
 #include "workspace/workspace.h"
 
 #define FIBRAD_HEAT_TASK 1024u /* rays of walls in one task */

@@ -1,9 +1,7 @@
 /* subdivision.c - divides patches near small spheres. SPDX-License-Identifier: MIT */
 #include "base/elementary.h"
-#include "base/random.h"
 #include "base/vector.h"
 #include "patches/subdivision.h"
-#include "patches/sphere_patch.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 

@@ -1,6 +1,5 @@
 /* wall_patch.c - the patches of walls and meshes, and the rays that leave them. SPDX-License-Identifier: MIT */
 #include "base/elementary.h"
-#include "base/random.h"
 #include "base/vector.h"
 #include "patches/subdivision.h"
 #include "scene/walls.h"

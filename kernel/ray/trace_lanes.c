@@ -7,7 +7,6 @@
 #include "base/lanes/below.h"
 #include "base/vector.h"
 #include "ray/tracer.h"
-#include "workspace/workspace.h"
 #include "scene/grid_walk.h"
 #include "scene/walls.h"
 

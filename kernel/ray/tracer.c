@@ -1,7 +1,5 @@
 /* tracer.c - memory of a tracer and its lists of near spheres. SPDX-License-Identifier: MIT */
 #include "ray/tracer.h"
-#include "base/arena.h"
-#include "base/random.h"
 
 #define LISTS_MIN 16u
 

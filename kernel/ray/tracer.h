@@ -12,7 +12,6 @@
 #ifndef FIBRAD_RAY_TRACER_H
 #define FIBRAD_RAY_TRACER_H
 
-#include "base/dispatch.h"
 #include "base/lanes/laned.h"
 #include "workspace/workspace.h"
 

@@ -1,6 +1,5 @@
 /* triangle_views.c - view factors from triangles to spheres, walls and surroundings. SPDX-License-Identifier: MIT */
 #include "base/elementary.h"
-#include "base/random.h"
 #include "base/sobol.h"
 #include "base/vector.h"
 #include "ray/tracer.h"

@@ -2,7 +2,6 @@
 #ifndef FIBRAD_ROW_BEAM_H
 #define FIBRAD_ROW_BEAM_H
 
-#include "base/dispatch.h"
 #include "row/row.h"
 
 /* Completes and checks a rule. given NULL: all defaults. Errors: _ARGUMENT. */

@@ -5,9 +5,7 @@
  * near spheres of work.h, shell by shell. A cull in floats leaves few spheres. Their distances are computed in
  * doubles. */
 #include FIBRAD_LANES_HEADER
-#include "base/lanes/laned.h"
 #include "base/lanes/turn.h"
-#include "base/random.h"
 #include "row/cast_lanes.h"
 #include "scene/walls.h"
 #include "near/near_lanes.h"

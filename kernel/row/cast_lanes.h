@@ -2,7 +2,6 @@
 #ifndef FIBRAD_ROW_CAST_LANES_H
 #define FIBRAD_ROW_CAST_LANES_H
 
-#include "base/dispatch.h"
 #include "row/row.h"
 
 /* A completed rule, and the place for the means. NULL: no means are wanted. */

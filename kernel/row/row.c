@@ -1,6 +1,5 @@
 /* row.c - rows by any method, with memory that grows. SPDX-License-Identifier: MIT */
 #include "row/row.h"
-#include "base/arena.h"
 #include "scene/walls.h"
 #include "rows/record.h"
 

@@ -4,7 +4,6 @@
 
 #include "base/lanes/laned.h"
 #include "workspace/workspace.h"
-#include "window/points.h"
 
 /* The windows of a row. */
 typedef struct fibrad_window_set {

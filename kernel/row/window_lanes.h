@@ -4,7 +4,6 @@
 
 #include "base/lanes/laned.h"
 #include "workspace/workspace.h"
-#include "window/points.h"
 
 /* With these numbers the first shell of a packed bed has 275 spheres, and two shells fit into the default memory.
  * Pairs from (2.4, 1.25) to (5.5, 1.2) were tried. This one and (4.2, 1.4) were the fastest at 100 directions. They

@@ -3,7 +3,6 @@
 #ifndef FIBRAD_SCENE_CLUMPS_H
 #define FIBRAD_SCENE_CLUMPS_H
 
-#include "base/arena.h"
 #include "scene/scene.h"
 
 /* Takes the arrays of clumps of n spheres from the arena. */

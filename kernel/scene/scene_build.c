@@ -1,7 +1,5 @@
 /* scene_build.c - copies spheres into a fixed-memory cell grid, and checks them. SPDX-License-Identifier: MIT */
-#include "scene/scene.h"
 #include "base/random.h"
-#include "base/arena.h"
 #include "base/dispatch.h"
 #include "scene/clumps.h"
 #include "scene/grid_walk.h"

@@ -1,7 +1,6 @@
 /* surface.c - view factors by tensor-product Fibonacci integration. SPDX-License-Identifier: MIT */
 #include "surface/surface.h"
 #include "base/arena.h"
-#include "base/dispatch.h"
 
 #define ALL_FLAGS                                                                                                      \
     (FIBRAD_SURFACE_NO_CORRECTION | FIBRAD_SURFACE_NO_HORIZON | FIBRAD_SURFACE_NO_REGION | FIBRAD_SURFACE_NO_EXACT |   \

@@ -5,7 +5,6 @@
 #ifndef FIBRAD_SURFACE_SURFACE_LANES_H
 #define FIBRAD_SURFACE_SURFACE_LANES_H
 
-#include "base/port.h"
 #include "base/dispatch.h"
 #include "fibrad_surface.h"
 #include "sample/tables.h"

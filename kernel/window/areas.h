@@ -7,7 +7,6 @@
 #ifndef FIBRAD_WINDOW_AREAS_H
 #define FIBRAD_WINDOW_AREAS_H
 
-#include "base/arena.h"
 #include "window/dense.h"
 
 #define FIBRAD_PIECES 48 /* approximate number of pieces that are integrated together */

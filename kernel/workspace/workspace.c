@@ -5,8 +5,6 @@
  * the same block: then lists that only save time become shorter. No result is lost, since each row begins with empty
  * memory. */
 #include "workspace/workspace.h"
-#include "base/arena.h"
-#include "base/random.h"
 
 /* The sizes that a packed bed needs. */
 #define USUAL_DISCS   256u

@@ -2,7 +2,6 @@
 #include "couple/ranks/ranks.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <string.h>
 
 #define CELLS_MAX 0x1p24

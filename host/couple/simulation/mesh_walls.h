@@ -10,7 +10,6 @@ extern "C" {
 
 #include "couple/simulation/mesh_motion.h"
 #include "mesh/meshes.h"
-#include "mesh/stl.h"
 
 enum { MESH_WALLS_MESSAGES = 2048 };
 

@@ -8,7 +8,6 @@
 #include "papers/furnace/furnace.h"
 #include "cli/message.h"
 #include "cli/options.h"
-#include "cli/output.h"
 #include "command/commands.h"
 #include "plot/gnuplot.h"
 #include "text/report.h"

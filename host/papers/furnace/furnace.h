@@ -2,8 +2,6 @@
 #ifndef FURNACE_H
 #define FURNACE_H
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "cli/progress.h"

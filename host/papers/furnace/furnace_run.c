@@ -6,10 +6,8 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "cli/message.h"
-#include "cli/progress.h"
 
 enum { FURNACE_BATCH = 4096, FURNACE_SWEEPS_MAX = 100000 };
 
@@ -123,14 +121,6 @@ static double furnace_largest_change(const struct furnace_run *run, double *befo
     return largest;
 }
 
-/* The change of E of each cell that would balance the cell if no other cell changed [W/m2]. The divergence is that
- * which bundles have measured. */
-static void furnace_local_change(const struct furnace_run *run, double *local) {
-    const fibrad_furnace_config *c = &run->config;
-    for (size_t k = 0; k < furnace_cells(run); k++)
-        local[k] = (c->source - run->at.divergence[k]) / (4 * c->absorption);
-}
-
 /* Estimates Theta, fluxes and the transverse term from the sum of the tallies. */
 static int furnace_estimate(struct furnace_run *run, const struct furnace_options *options, bool transverse) {
     int status = fibrad_furnace_estimate(run->furnace, run->tallies[run->threads], options->estimator, transverse,
@@ -156,7 +146,8 @@ static int furnace_iterate(struct furnace_run *run, const struct furnace_options
         if (status) return status;
         status = furnace_estimate(run, options, transverse);
         if (status) return status;
-        furnace_local_change(run, local);
+        for (size_t k = 0; k < furnace_cells(run); k++) /* would balance a cell if no other cell changed [W/m2] */
+            local[k] = (c->source - run->at.divergence[k]) / (4 * c->absorption);
         status = furnace_solve_lines(run, options);
         if (status) return status;
         run->change = furnace_largest_change(run, before);

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/message.h"
 #include "text/read_lines.h"
 
 enum key { KEY_SIZE, KEY_CELLS, KEY_ABSORPTION, KEY_SCATTERING, KEY_SOURCE, KEY_WALL, KEYS };

@@ -58,16 +58,13 @@ static int take_obstacle(const char *text, void *pair_request) {
 
 static int take_length(const char *text, void *pair_request) {
     struct pair_request *request = pair_request;
-    switch (request->given++) {
-    case 0:
-        return options_number("R1", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r1);
-    case 1:
-        return options_number("R2", text, FIBRAD_LENGTH_MIN, FIBRAD_LENGTH_MAX, &request->r2);
-    case 2:
-        return options_number("GAP", text, -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX, &request->gap);
-    default:
-        return message(STATUS_USAGE, "three lengths are allowed, not also '%.40s'; see fibrad pair --help", text);
-    }
+    static const char *const name[] = {"R1", "R2", "GAP"};
+    double *const length[] = {&request->r1, &request->r2, &request->gap};
+    const int k = request->given++;
+    if (k < 3)
+        return options_number(name[k], text, k < 2 ? FIBRAD_LENGTH_MIN : -FIBRAD_LENGTH_MAX, FIBRAD_LENGTH_MAX,
+                              length[k]);
+    return message(STATUS_USAGE, "three lengths are allowed, not also '%.40s'; see fibrad pair --help", text);
 }
 
 static int take_method(const char *text, void *by_surface) {
@@ -176,12 +173,6 @@ static const char *pair_name(uint32_t i, char text[32]) {
     return text;
 }
 
-static int pair_refuse(int status, const fibrad_fault *fault) {
-    char first[32], second[32];
-    return message(STATUS_USAGE, "%s and %s: %s", pair_name(fault->first, first), pair_name(fault->second, second),
-                   fibrad_status_text(status));
-}
-
 /* The spheres from `first` on. */
 static fibrad_spheres pair_spheres(const struct pair_request *request, uint32_t first) {
     return (fibrad_spheres){.x = request->x + first,
@@ -197,11 +188,14 @@ static int pair_facts(const struct pair_request *request, fibrad_scene_facts *fa
     fibrad_scene *scene;
     fibrad_fault fault;
     void *block;
+    char first[32], second[32];
     const int status = fibrad_heap_scene(&scene, &block, NULL, &spheres, &fault);
     if (!status) fibrad_scene_describe(scene, facts);
     free(block);
     if (status == FIBRAD_E_MEMORY) return message_memory();
-    return status ? pair_refuse(status, &fault) : STATUS_OK;
+    if (!status) return STATUS_OK;
+    return message(STATUS_USAGE, "%s and %s: %s", pair_name(fault.first, first), pair_name(fault.second, second),
+                   fibrad_status_text(status));
 }
 
 /* The exact factor with obstacles. report_wanted warns if the error is not reached: that of --error, or the default. */

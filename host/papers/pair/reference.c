@@ -2,10 +2,11 @@
  * SPDX-License-Identifier: MIT */
 #include "papers/pair/reference.h"
 
-#include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "simple/nearest.h"
+#include "text/read_number.h"
 
 /* ---- visible areas in one direction ---------------------------------------------------------------------------- */
 
@@ -72,11 +73,6 @@ static bool matters(const struct slicer *s, double x, double y, uint32_t own, ui
     return true;
 }
 
-static int ascending(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static uint32_t find_events(struct slicer *s) {
     uint32_t n = 0;
     s->event[n++] = -1;
@@ -90,12 +86,12 @@ static uint32_t find_events(struct slicer *s) {
         for (uint32_t a = 0; a < b; a++) {
             const struct disc *A = &s->disc[a];
             const double du = B->u - A->u, dv = B->v - A->v, d2 = du * du + dv * dv;
-            const double outer = square(A->r + B->r), inner = square(A->r - B->r);
-            if (d2 > 0 && fmin(fabs(d2 - outer), fabs(d2 - inner)) < 1e-9 * outer) { /* tangent within rounding */
-                const double side = fabs(d2 - outer) < fabs(d2 - inner) || A->r > B->r ? 1 : -1;
+            const double outer = square(A->r + B->r), within = square(A->r - B->r);
+            if (d2 > 0 && fmin(fabs(d2 - outer), fabs(d2 - within)) < 1e-9 * outer) { /* tangent within rounding */
+                const double side = fabs(d2 - outer) < fabs(d2 - within) || A->r > B->r ? 1 : -1;
                 s->event[n++] = A->u + side * A->r * du / sqrt(d2);
             }
-            if (d2 >= outer || d2 <= inner) continue;
+            if (d2 >= outer || d2 <= within) continue;
             const double along = (d2 + (A->r - B->r) * (A->r + B->r)) / (2 * d2);
             const double across = sqrt(fmax(square(A->r) / d2 - along * along, 0));
             for (int side = -1; side <= 1; side += 2) {
@@ -104,7 +100,7 @@ static uint32_t find_events(struct slicer *s) {
             }
         }
     }
-    qsort(s->event, n, sizeof *s->event, ascending);
+    qsort(s->event, n, sizeof *s->event, number_order);
     return n;
 }
 
@@ -189,22 +185,16 @@ struct integral {
     uint64_t evaluations, max_evaluations;
 };
 
-static double dot_product(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void cross_product(const double a[3], const double b[3], double out[3]) {
-    for (int k = 0; k < 3; k++) out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 /* Two unit vectors across the unit vector w. */
 static void across(const double w[3], double side[3], double up[3]) {
     int k = fabs(w[0]) < fabs(w[1]) ? 0 : 1;
     if (fabs(w[2]) < fabs(w[k])) k = 2;
     double axis[3] = {0};
     axis[k] = 1;
-    cross_product(w, axis, side);
-    const double length = sqrt(dot_product(side, side));
+    cross(w, axis, side);
+    const double length = sqrt(inner(side, side));
     for (k = 0; k < 3; k++) side[k] /= length;
-    cross_product(w, side, up);
+    cross(w, side, up);
 }
 
 /* The direction at (x, y) of a chart. Returns the solid angle per dx dy. The integrand behaves like a square root at
@@ -248,11 +238,10 @@ static uint32_t collect_discs(struct integral *in, const double w[3], const uint
     double side[3], up[3];
     across(w, side, up);
     uint32_t met = 1, kept = 1;
-    const double last = in->goal < in->n ? dot_product(w, in->target[in->goal].c) : INFINITY;
+    const double last = in->goal < in->n ? inner(w, in->target[in->goal].c) : INFINITY;
     for (uint32_t k = 0; k < count; k++) {
         const struct target *target = &in->target[near[k]];
-        const double depth = dot_product(w, target->c), u = dot_product(side, target->c),
-                     v = dot_product(up, target->c);
+        const double depth = inner(w, target->c), u = inner(side, target->c), v = inner(up, target->c);
         if (depth <= 0 || depth > last || u * u + v * v >= square(1 + target->r)) continue;
         disc[met++] = (struct disc){u, v, target->r, depth, near[k]};
     }
@@ -457,7 +446,7 @@ static int integral_prepare(struct integral *in, const fibrad_spheres *spheres, 
         target->c[1] = (spheres->y[k] - spheres->y[i]) / unit;
         target->c[2] = (spheres->z[k] - spheres->z[i]) / unit;
         target->r = spheres->r[k] / unit;
-        target->distance = sqrt(dot_product(target->c, target->c));
+        target->distance = sqrt(inner(target->c, target->c));
         target->cone = asin(fmin((1 + target->r) / target->distance, 1));
         if (k != i && !(target->distance > 0)) return REFERENCE_ARGUMENT;
     }

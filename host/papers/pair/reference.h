@@ -15,8 +15,6 @@
 #ifndef REFERENCE_H
 #define REFERENCE_H
 
-#include <stdint.h>
-
 #include "fibrad.h"
 
 enum reference_status {

@@ -3,8 +3,6 @@
 #ifndef REPRODUCE_H
 #define REPRODUCE_H
 
-#include <stdbool.h>
-#include <stdint.h>
 #include <stdio.h>
 
 #include "bed/bed.h"

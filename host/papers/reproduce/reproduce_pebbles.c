@@ -1,6 +1,5 @@
 /* reproduce_pebbles.c - tables and figures of the pebble-bed paper. SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdlib.h>
 
 #include "bed/packing.h"
 #include "cli/message.h"

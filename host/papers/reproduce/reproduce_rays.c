@@ -1,7 +1,6 @@
 /* reproduce_rays.c - the table of the pebble-bed paper by its own method, which is rays.
  * SPDX-License-Identifier: MIT */
 #include <math.h>
-#include <stdlib.h>
 
 #include "cli/message.h"
 #include "papers/reproduce/reproduce.h"

@@ -2,7 +2,6 @@
 #ifndef VTK_GRID_H
 #define VTK_GRID_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 

@@ -13,7 +13,6 @@
 
 #include "cli/message.h"
 #include "text/read_number.h"
-#include "text/xml.h"
 #include "read/vtk/vtk_grid.h"
 
 enum { WORD = XML_WORD, WIDEST = 8, PACKED_MOST = 1100 }; /* zlib packs to no less than 1/1032 */
