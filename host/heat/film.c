@@ -72,7 +72,7 @@ static int find_wall_film(struct heat *h, uint32_t k) {
         return message(STATUS_USAGE,
                        "--wall: %s is insulated and has no convection; power=0 is a wall that gives off what it gains",
                        name);
-    if (h->values.tables.column[k].n > 0)
+    if (h->values.column[k].n > 0)
         return message(STATUS_USAGE, "--wall: %s has temperatures of its triangles, and no convection", name);
     films->wall_follows[k] = isnan(said->gas);
     if (films->wall_follows[k] && (!gas->given || gas->column || gas->types || h->film.flux > 0))
