@@ -164,7 +164,7 @@ FIXTURE(begin, end)
 #define BED                                                                                                            \
     "couple", bed, "--openfoam", folder, "--window", formatted("%g", LENGTH), "--wall", box, "--emissivity", "0.8",    \
         "--temperature", "500", "--heat-capacity", "800", "--density", "2500", "--power", "P", "--step",               \
-        formatted("%g", LENGTH), "--threads", "1", "--directions", "16", "--patches", "24"
+        formatted("%g", LENGTH), "--threads", "1", "--directions", "16", "--patches", "24", "--wall-rays", "20000"
 
 /* Runs both. Returns the exit status of the bed. *asked: OpenFOAM was asked to end. */
 static int run_both(const char *const *arguments, int *asked) {

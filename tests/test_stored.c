@@ -14,7 +14,7 @@ FIXTURE(make_folder, remove_folder)
 #define SIGMA FIBRAD_STEFAN_BOLTZMANN
 
 /* What a sphere alone and a floor see needs few beams. */
-static const fibrad_heat_config few = {.directions = 24, .points = 64, .patches = 24};
+static const fibrad_heat_config few = {.directions = 24, .points = 64, .patches = 24, .wall_rays = 20000};
 
 static double fourth(double t) { return t * t * t * t; }
 
