@@ -66,7 +66,8 @@ int contacts_find_places(struct contact_state *state, const struct bed *bed, con
         const bool again = k > 0 && n < PLACES_MOST && state->first[k - 1] == i && state->second[k - 1] == end;
         n = again ? n : 0;
         place[n] = nearest_place(bed, walls->meshes, i, end - bed->n, place, n);
-        state->side[k] = place[n].side == CONTACT_NO_SIDE ? state->side[k - 1] : place[n++].side;
+        if (place[n].side != CONTACT_NO_SIDE) ++n;
+        if (n > 0) state->side[k] = place[n - 1].side;
     }
     return STATUS_OK;
 }

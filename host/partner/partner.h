@@ -8,10 +8,11 @@
 
 #include "heat/heat.h"
 
+#define NOT_EXCHANGED UINT32_MAX
+
 /* What is exchanged at faces. A face is a triangle of a wall that the partner has. Faces are in the order of walls, and
  * those of a wall in the order of triangles. The partner gives a face a temperature, or a film and the temperature
  * behind the film. Arrays of the partner begin as NaN: not given. */
-enum { NOT_EXCHANGED = UINT32_MAX };
 struct exchange_faces {
     uint32_t n;
     uint32_t *triangle;            /* [n] number of the triangle in all meshes together */
