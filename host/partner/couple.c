@@ -167,9 +167,11 @@ static int make_contacts(struct coupling *c) {
     if (!t->temperature) return STATUS_OK;
     c->run.span.contact_temperature = c->contact[CONTACT_END], c->run.span.contact_energy = c->contact[CONTACT_ENERGY];
     for (uint32_t k = 0, f; k < t->n; ++k) {
-        if (find_face(c, k, &f)) t->temperature[k] = e->faces.found[f];
+        if (find_face(c, k, &f)) { /* then the first end is a sphere */
+            t->temperature[k] = e->faces.found[f];
+            c->contact[CONTACT_FLOW][k] = conductance_of(t, k) * (e->particles.found[t->first[k]] - t->temperature[k]);
+        }
         c->contact[CONTACT_END][k] = t->temperature[k];
-        c->contact[CONTACT_FLOW][k] = conductance_of(t, k) * (e->particles.found[t->first[k]] - t->temperature[k]);
     }
     return STATUS_OK;
 }

@@ -206,13 +206,6 @@ static void note_spot(const fibrad_heat *heat, uint32_t b, double warmer) {
     span->hottest_spot = fibrad_max(span->hottest_spot, warmer);
 }
 
-/* The temperature of the second end of contact k. */
-static double temperature_of_second(const fibrad_heat *heat, uint32_t k) {
-    const fibrad_contacts *c = &heat->contacts;
-    return fibrad_heat_at_contact(heat, k,
-                                  fibrad_contact_temperature(c, heat->sources.emission[heat->end[c->second[k]]]));
-}
-
 /* Finds what contact k conducts. Returns by how much its flow changes. */
 static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) {
     const fibrad_contacts *c = &heat->contacts;
@@ -231,9 +224,8 @@ static double find_flow(fibrad_heat *heat, uint32_t k, fibrad_rings_work *work) 
     const double resistance = first.resistance + second.resistance;
     if (resistance > 0 && resistance < inf)
         s->conductance[k] = 1 / resistance, s->offset[k] = (first.apart - second.apart) / resistance;
-    s->next[k] = s->conductance[k] *
-                     (fibrad_contact_temperature(c, heat->sources.emission[i]) - temperature_of_second(heat, k)) +
-                 s->offset[k];
+    const double other = fibrad_heat_at_contact(heat, k, fibrad_contact_temperature(c, heat->sources.emission[j]));
+    s->next[k] = s->conductance[k] * (fibrad_contact_temperature(c, heat->sources.emission[i]) - other) + s->offset[k];
     s->doubt[k] = square_of(s->conductance[k]) *
                   (first.doubt[0] + second.doubt[0] + (first.doubt[1] + second.doubt[1]) * square_of(s->next[k]));
     if (i < heat->spheres) note_spot(heat, i, first.apart - first.resistance * s->next[k]);
@@ -275,10 +267,11 @@ void fibrad_heat_place_flows(fibrad_heat *heat) {
 
 void fibrad_heat_add_places(const fibrad_heat *heat, double *to) {
     const fibrad_contacts *c = &heat->contacts;
-    for (uint32_t k = 0; k < c->count && heat->sources.asked.contact_temperature != NULL; k++) {
+    const double *own = heat->sources.asked.contact_temperature;
+    for (uint32_t k = 0; k < c->count && own != NULL; k++) {
+        if (own[k] != own[k]) continue; /* NaN: that of the wall */
         const uint32_t b = heat->end[c->second[k]];
-        const double more = c->conductance[k] *
-                            (temperature_of_second(heat, k) - fibrad_contact_temperature(c, heat->sources.emission[b]));
+        const double more = c->conductance[k] * (own[k] - fibrad_contact_temperature(c, heat->sources.emission[b]));
         to[heat->end[c->first[k]]] += more, to[b] -= more;
     }
 }
